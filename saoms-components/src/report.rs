@@ -20,10 +20,10 @@ submit! {
     }
 }
 
-/// `1 of 1 pieces of luggage delivered, no collision, 0 stranded`; `None` if no luggage was requested.
+/// `1 of 1 pieces of luggage delivered, no collision, 0 stranded`; `None` if nothing was requested.
 fn result(count: &Counts<'_>) -> Option<String> {
     let delivered = progress(count)?;
-    let given_up = match count("luggage.given_up") {
+    let given_up = match count("luggage.given_up") + count("errands.given_up") {
         0 => String::new(),
         several => format!(", {several} given up"),
     };
@@ -34,10 +34,17 @@ fn result(count: &Counts<'_>) -> Option<String> {
     Some(format!("{delivered}{given_up}, {collisions}, {} stranded", count("stranded")))
 }
 
-/// `1 of 1 pieces of luggage delivered`; `None` if no luggage was requested.
+/// `1 of 1 pieces of luggage delivered`, `3 of 5 errands finished`; `None` if nothing was requested.
 fn progress(count: &Counts<'_>) -> Option<String> {
-    let requested = count("luggage.requested");
-    (requested > 0).then(|| format!("{} of {requested} pieces of luggage delivered", count("luggage.delivered")))
+    let (luggage, errands) = (count("luggage.requested"), count("errands.requested"));
+    let delivered = format!("{} of {luggage} pieces of luggage delivered", count("luggage.delivered"));
+    let finished = format!("{} of {errands} errands finished", count("errands.finished"));
+    match (luggage > 0, errands > 0) {
+        (true, true) => Some(format!("{delivered}, {finished}")),
+        (true, false) => Some(delivered),
+        (false, true) => Some(finished),
+        (false, false) => None,
+    }
 }
 
 /// `1 collision`, `2 collisions`.

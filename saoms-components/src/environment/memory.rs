@@ -2,8 +2,8 @@
 
 use saoms_api::{Failure, Field, Message, Saved, Time};
 
-use super::Environment;
 use super::player::{Player, PlayerMemory};
+use super::{Environment, OpenJob};
 use crate::validation::SpeakerMemory;
 
 #[derive(Clone, Debug, Message)]
@@ -12,6 +12,7 @@ struct EnvironmentMemory {
     played: u64,
     open: Vec<OpenPiece>,
     luggage: u32,
+    visits: u32,
     speakers: SpeakerMemory,
     has_world: bool,
     done: bool,
@@ -27,17 +28,22 @@ struct Playing {
 struct OpenPiece {
     luggage: u32,
     passed_on: bool,
+    is_visit: bool,
 }
 
 impl Environment {
     pub(super) fn save_state(&self) -> Saved {
-        let open = self.open.iter().map(|(&luggage, &passed_on)| OpenPiece { luggage, passed_on });
+        let open = self.open.iter().map(|(&luggage, &job)| {
+            let OpenJob { passed_on, is_visit } = job;
+            OpenPiece { luggage, passed_on, is_visit }
+        });
         let playing = self.playing.as_ref();
         Saved::of(&EnvironmentMemory {
             playing: playing.map(|(start, player)| Playing { start: *start, player: player.memory() }),
             played: self.played as u64,
             open: open.collect(),
             luggage: self.luggage,
+            visits: self.visits,
             speakers: self.validator.memory(),
             has_world: self.has_world,
             done: self.done,
@@ -52,8 +58,9 @@ impl Environment {
             None => None,
         };
         self.played = usize::try_from(memory.played).unwrap_or(usize::MAX);
-        self.open = memory.open.iter().map(|piece| (piece.luggage, piece.passed_on)).collect();
-        self.luggage = memory.luggage;
+        let job = |piece: &OpenPiece| OpenJob { passed_on: piece.passed_on, is_visit: piece.is_visit };
+        self.open = memory.open.iter().map(|piece| (piece.luggage, job(piece))).collect();
+        (self.luggage, self.visits) = (memory.luggage, memory.visits);
         self.validator.restore(memory.speakers);
         (self.has_world, self.done) = (memory.has_world, memory.done);
         Ok(())

@@ -20,8 +20,8 @@ use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage, REMOVAL,
-    ROBOT_LIST, Removal, RobotList,
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, FIRST_VISIT, Fault,
+    LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit,
 };
 use crate::report::pieces;
 use crate::validation::MessageValidator;
@@ -37,13 +37,26 @@ pub use scenario::{Continuation, EventSpec, Line, RandomRange, Scenario, Spanned
 pub struct EnvironmentProperties {
     /// Events and their times since the environment's first execution, one event a line: `at 6s luggage (3,1) to
     /// (3,10)`, `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4`, `at 3s takeoff 4`, `at
-    /// 9s breakdown Robot002`, `at 30s gone Robot002` (off the floor); repeated events: `from 10s every 5s 100 times
-    /// luggage random to random`. Two values with `..` between them are a range from which a value is drawn: `every
-    /// 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`. Events that components of other classes take have the fields of
-    /// their messages: `at 5s fire at=(3,4) size=1..3`. `;` ends a line, too, and `#` starts a comment. Without a
-    /// scenario nothing happens. A long scenario can be in a file: `file="scenario.txt"`.
-    #[property(language = "scenario", plays("luggage", "landing", "takeoff", "breakdown", "gone", "end"))]
+    /// 9s breakdown Robot002`, `at 30s gone Robot002` (off the floor), `at 5s visit (3,1) then (5,2) by Robot002`;
+    /// repeated events: `from 10s every 5s 100 times luggage random to random`. Two values with `..` between them are a
+    /// range from which a value is drawn: `every 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`. Events that components of
+    /// other classes take have the fields of their messages: `at 5s fire at=(3,4) size=1..3`. `;` ends a line, too, and
+    /// `#` starts a comment. Without a scenario nothing happens. A long scenario can be in a file:
+    /// `file="scenario.txt"`.
+    #[property(language = "scenario", plays("luggage", "visit", "landing", "takeoff", "breakdown", "gone", "end"))]
     pub(crate) scenario: Vec<String>,
+    /// Greatest number of pieces of luggage and visits that are open at once. While so many are, the events of the
+    /// scenario that are due wait.
+    #[property(range = 1..)]
+    pub(crate) most_open: Option<u32>,
+}
+
+/// Luggage or a visit that is published and not done yet.
+#[derive(Clone, Copy, Debug, Default)]
+struct OpenJob {
+    /// True if it was passed on to the robots.
+    passed_on: bool,
+    is_visit: bool,
 }
 
 /// Plays a scenario: publishes its events at their times. Random values follow from the seed of the run.
@@ -56,14 +69,18 @@ pub struct Environment {
     scenario: Scenario,
     playing: Option<(Time, Player)>,
     played: usize,
-    /// Luggage that is published, but not delivered yet; true if it was passed on to the robots.
-    open: BTreeMap<u32, bool>,
+    /// Luggage and visits that are published, but not done yet.
+    open: BTreeMap<u32, OpenJob>,
+    most_open: usize,
     luggage: u32,
+    visits: u32,
     map: Option<Map>,
     validator: MessageValidator,
     has_world: bool,
     #[publishes(ENVIRONMENT)]
     events: Publisher<EnvironmentEvent>,
+    #[publishes(VISIT)]
+    visits_asked: Publisher<Visit>,
     #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
     #[subscribes(EVENT_LUGGAGE)]
@@ -88,7 +105,10 @@ impl Component for Environment {
             playing: None,
             played: 0,
             open: BTreeMap::new(),
+            most_open: properties.most_open.map_or(usize::MAX, |most| most as usize),
             luggage: 0,
+            visits: 0,
+            visits_asked: Publisher::default(),
             map: None,
             validator: MessageValidator::default(),
             has_world: false,
@@ -128,6 +148,9 @@ impl Component for Environment {
         };
         let now = context.due().since(start);
         for _ in 0..MAX_EVENTS {
+            if self.open.len() >= self.most_open {
+                break;
+            }
             let Some(event) = player.next(now, self.map.as_ref()) else { break };
             self.publish(context, event)?;
         }
@@ -155,9 +178,12 @@ impl Component for Environment {
             let waits = self.scenario.needs_area() && self.map.is_none();
             return waits.then(|| "a `saoms.World`, which defines the area".to_owned());
         };
-        let (first, passed_on) = self.open.first_key_value().filter(|_| player.is_over())?;
-        let pieces = pieces(*first, self.open.len() - 1);
-        Some(match passed_on {
+        let (first, job) = self.open.first_key_value().filter(|_| player.is_over())?;
+        let pieces = match job.is_visit {
+            true => format!("visit {}", first - FIRST_VISIT),
+            false => pieces(*first, self.open.len() - 1),
+        };
+        Some(match job.passed_on {
             true => format!("a robot to carry {pieces}"),
             false => format!("a master of the environment to pass on {pieces} on `{}`", EVENT_LUGGAGE.name()),
         })
@@ -191,17 +217,19 @@ impl Environment {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,
                 _ => {
-                    self.open.entry(response.luggage).and_modify(|passed_on| *passed_on = true);
+                    self.open.entry(response.luggage).and_modify(|job| job.passed_on = true);
                     continue;
                 }
             };
-            if self.open.remove(&response.luggage).is_none() {
-                continue;
+            let Some(job) = self.open.remove(&response.luggage) else { continue };
+            if job.is_visit {
+                context.count("errands.open", counted);
+                context.count(if counted == 0 { "errands.given_up" } else { "errands.finished" }, 1);
             }
             if counted == 0 {
                 context.vote(Work::GivenUp);
             }
-            if !self.has_world {
+            if !self.has_world && !job.is_visit {
                 context.count("luggage.open", counted);
                 context.count("luggage.given_up", 1 + counted);
             }
@@ -231,7 +259,7 @@ impl Environment {
             Some(ScenarioEvent::Luggage { from, to }) => {
                 self.luggage += 1;
                 let request = EventLuggage::request(self.luggage, from, to);
-                self.open.insert(self.luggage, false);
+                self.open.insert(self.luggage, OpenJob::default());
                 if !self.has_world {
                     context.count("luggage.open", 1);
                 }
@@ -242,6 +270,17 @@ impl Environment {
                     record!(new_luggage: "luggage {luggage} waits at {from} to go to {to}", luggage, from, to),
                 );
                 context.send(&self.events, request.into())
+            }
+            Some(ScenarioEvent::Visit { stops, by }) => {
+                self.visits += 1;
+                let visit = Visit { visit: FIRST_VISIT + self.visits, robot: by.unwrap_or(0), stops };
+                self.open.insert(visit.visit, OpenJob { is_visit: true, passed_on: false });
+                context.count("errands.requested", 1);
+                context.count("errands.open", 1);
+                context.console(format_args!("Environment: Test{test}: {visit} at {now}"));
+                let ([from, to], number) = (visit.ends(), visit.count());
+                tell(context, record!(new_visit: "visit {number} is to do: from {from} to {to}", number, from, to));
+                context.send(&self.visits_asked, visit)
             }
             Some(ScenarioEvent::Exceptional(event)) => {
                 context.console(format_args!("Environment: Test{test}: New event: {event}."));

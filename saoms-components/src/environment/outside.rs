@@ -57,6 +57,10 @@ impl Reader {
             let fault = TextFault::new(line.bytes, "this line never ends, but a line of `--events` has to end");
             return Err(fault.help("add an end: `100 times`, or `until 60s`"));
         }
+        if matches!(line.event, EventSpec::Visit { .. }) {
+            let message = "found `visit`, which is not possible from outside: expected another event";
+            return Err(TextFault::new(line.bytes, message).help("write visits into the scenario of a composite"));
+        }
         if number.is_some() && !(matches!(line.event, EventSpec::Luggage { .. }) && line.times == Some(1)) {
             let message = format!("found `{NUMBER}`, which is allowed only after a single piece of luggage");
             return Err(TextFault::new(event.len()..text.len(), message));
@@ -93,6 +97,8 @@ impl Reader {
                 let number = self.luggage_number(number);
                 (EventLuggage::request(number, from, to).into(), format!("luggage {from} to {to} {NUMBER} {number}"))
             }
+            // It was refused before.
+            ScenarioEvent::Visit { .. } => (EnvironmentEvent::default(), "end".to_owned()),
             ScenarioEvent::Exceptional(event) => {
                 let kind = match event.kind {
                     ExceptionalKind::Landing => "landing",
@@ -271,7 +277,7 @@ mod tests {
                 "gon 2",
             ]),
             [
-                "`lugage`: found `lugage`, expected `luggage`, `landing`, `takeoff`, `breakdown`, `gone` or `end`, Some(\"luggage\")",
+                "`lugage`: found `lugage`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone` or `end`, Some(\"luggage\")",
                 "`landin`: found `landin`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"landing\")",
                 "`att`: found `att`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"at\")",
                 "`hello`: found `hello`, expected an event, `at`, `from` or `then` at the start of a line, None",

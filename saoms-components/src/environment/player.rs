@@ -19,6 +19,13 @@ pub enum ScenarioEvent {
         /// Destination of the luggage.
         to: Block,
     },
+    /// Blocks to visit.
+    Visit {
+        /// The blocks, in their order.
+        stops: Vec<Block>,
+        /// Number of the only robot that may do it.
+        by: Option<u32>,
+    },
     /// A landing or a take-off.
     Exceptional(ExceptionalEvent),
     /// The robot with this number breaks down.
@@ -155,6 +162,14 @@ pub(super) fn draw(event: &EventSpec, chance: &mut Chance, area: Option<&Map>) -
         EventSpec::Luggage { from, to } => {
             let from = from.value.draw(chance, area, to.value.block())?;
             Some(ScenarioEvent::Luggage { from, to: to.value.draw(chance, area, Some(from))? })
+        }
+        EventSpec::Visit { stops, by } => {
+            let mut blocks: Vec<Block> = Vec::with_capacity(stops.len());
+            for stop in stops {
+                let last = blocks.last().copied();
+                blocks.push(stop.value.draw(chance, area, last)?);
+            }
+            Some(ScenarioEvent::Visit { stops: blocks, by: by.as_ref().map(|by| by.value.draw(chance)) })
         }
         EventSpec::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
         EventSpec::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),

@@ -89,7 +89,9 @@ fn chance_draws_within_the_ends_and_by_the_seed_alone() {
                 assert!((1000..=2100).contains(&(at - last)) || (0..=400).contains(&(at - last)), "{at}");
                 last = *at;
             }
-            ScenarioEvent::End | ScenarioEvent::Gone(_) | ScenarioEvent::Raised(_) => unreachable!("no line says so"),
+            ScenarioEvent::Visit { .. } | ScenarioEvent::End | ScenarioEvent::Gone(_) | ScenarioEvent::Raised(_) => {
+                unreachable!("no line says so")
+            }
             ScenarioEvent::Breakdown(robot) => {
                 assert!((1..=3).contains(robot) && (30_000..=60_100).contains(at))
             }
@@ -123,7 +125,7 @@ fn a_line_of_very_many_words_is_one_mistake() {
 
 #[test]
 fn every_wrong_line_says_where_and_why() {
-    let kinds = "`luggage`, `landing`, `takeoff`, `breakdown`, `gone` or `end`";
+    let kinds = "`luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone` or `end`";
     let block = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
     let robot = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
     let time = "a time such as `6s` or `500ms`";

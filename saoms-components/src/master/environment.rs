@@ -9,7 +9,8 @@ use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
     AREA, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent,
-    EventLuggage, ExceptionalEvent, FAULT, Fault, FaultKind, LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList,
+    EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LuggageStage, REMOVAL, ROBOT_LIST, Removal,
+    RobotList, VISIT, Visit,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
@@ -33,6 +34,10 @@ pub struct MasterEnvironment {
     open: OpenLuggage,
     #[subscribes(ENVIRONMENT)]
     events: Subscription<EnvironmentEvent>,
+    #[subscribes(VISIT)]
+    visits_asked: Subscription<Visit>,
+    #[publishes(VISIT)]
+    visits: Publisher<Visit>,
     #[subscribes(AREA)]
     area: Subscription<Area>,
     #[subscribes(EVENT_LUGGAGE)]
@@ -91,6 +96,10 @@ impl Component for MasterEnvironment {
             self.sort(context, header, event)?;
             context.console(format_args!("MasterEnvironmentManagingSystem: new event received and managed at {now}"));
         }
+        for (header, visit) in context.receive(&self.visits_asked).with_headers() {
+            context.because(header.cause);
+            self.ask_to_visit(context, header, visit)?;
+        }
         context.because(Cause::default());
         for (header, said) in context.receive(&self.responses).with_headers() {
             self.hear(context, header, said);
@@ -115,6 +124,11 @@ impl Component for MasterEnvironment {
                 robot
             ));
             info!(context, "luggage {luggage} waits again at {from}: robot {robot} is gone");
+            context.send(&self.luggage, request)?;
+        }
+        for request in self.open.visit_again() {
+            let visit = request.luggage - FIRST_VISIT;
+            info!(context, "visit {visit} waits again: its robot left it");
             context.send(&self.luggage, request)?;
         }
         for (cause, robot) in started {
@@ -203,10 +217,34 @@ impl MasterEnvironment {
         Ok(())
     }
 
+    /// Asks the robots for a visit, if it is possible and new.
+    fn ask_to_visit(&mut self, context: &mut Context<'_>, header: Header, visit: &Visit) -> Result<(), Failure> {
+        if header.sender == context.sender() {
+            return Ok(());
+        }
+        let known = self.filter.knows(visit.visit).then_some(Problem::KnownLuggage);
+        let judged = visit.validate(header.sender, &mut self.validator, self.filter.area());
+        if let Some(problem) = known.or(judged.err()) {
+            context.count("errands.ignored", 1);
+            self.validator.log_rejection(context, header, visit, problem);
+            let [first, last] = visit.ends();
+            return match known {
+                Some(_) => Ok(()),
+                None => context.send(&self.luggage, EventLuggage::given_up(visit.visit, first, last)),
+            };
+        }
+        self.filter.note(visit.visit);
+        self.open.add_visit(visit);
+        context.send(&self.luggage, visit.request())
+    }
+
     /// Repeats what waits, for a robot that has just started.
     fn repeat_for(&self, robot: u32, context: &mut Context<'_>) -> Result<(), Failure> {
         let (luggage, helps) = self.open.waiting_for(robot);
         for request in luggage {
+            if let Some(visit) = self.open.visit(request.luggage) {
+                context.send(&self.visits, visit)?;
+            }
             context.send(&self.luggage, request.again_for(robot))?;
         }
         for situation in helps {

@@ -5,7 +5,7 @@ use saoms_api::{Field, Header, ReportValue, Time};
 
 use crate::gone::Gone;
 use crate::grid::Block;
-use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, RobotList};
+use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, RobotList, Visit};
 use crate::robot::Job;
 
 /// Open luggage, and the robots that could bring it.
@@ -24,13 +24,15 @@ pub(super) struct OpenLuggage {
     gone: Gone,
     /// What the world says that robots left when they were taken off the floor, by robot.
     left: BTreeMap<u32, Removal>,
+    /// Visits that a robot left, which are not requested again yet.
+    left_visits: Vec<u32>,
     /// True once there was a robot.
     seen: bool,
     /// True if something changed since the last check.
     changed: bool,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Piece {
     from: Block,
     to: Block,
@@ -40,6 +42,28 @@ struct Piece {
     waits: bool,
     /// The robot that has taken it, unless that one asked for help with it.
     taken: Option<u32>,
+    /// Blocks to visit, in place of bringing luggage.
+    stops: Vec<Block>,
+    /// The only robot that may do it.
+    only: Option<u32>,
+}
+
+impl Piece {
+    /// The request for it, under its number.
+    fn request(&self, luggage: u32) -> EventLuggage {
+        self.visit(luggage).map_or_else(|| EventLuggage::request(luggage, self.from, self.to), |visit| visit.request())
+    }
+
+    /// What robots have to know of a visit.
+    fn visit(&self, luggage: u32) -> Option<Visit> {
+        let robot = self.only.unwrap_or(0);
+        (!self.stops.is_empty()).then(|| Visit { visit: luggage, robot, stops: self.stops.clone() })
+    }
+
+    /// True if this robot may do it and did not refuse it.
+    fn is_for(&self, robot: u32) -> bool {
+        self.only.is_none_or(|only| only == robot) && !self.refused.contains(&robot)
+    }
 }
 
 /// Open luggage, for a master that goes on.
@@ -52,6 +76,7 @@ pub(super) struct OpenMemory {
     broken: Vec<u32>,
     gone: Gone,
     left: Vec<Removal>,
+    left_visits: Vec<u32>,
     seen: bool,
     changed: bool,
 }
@@ -64,6 +89,8 @@ struct PieceMemory {
     refused: Vec<u32>,
     waits: bool,
     taken: Option<u32>,
+    stops: Vec<Block>,
+    only: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -106,9 +133,18 @@ impl OpenLuggage {
     /// The state for a master that goes on.
     pub(super) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused, waits, taken } = piece;
-            let refused = refused.iter().copied().collect();
-            PieceMemory { luggage: *luggage, from: *from, to: *to, refused, waits: *waits, taken: *taken }
+            let Piece { from, to, refused, waits, taken, stops, only } = piece;
+            let (refused, stops) = (refused.iter().copied().collect(), stops.clone());
+            PieceMemory {
+                luggage: *luggage,
+                from: *from,
+                to: *to,
+                refused,
+                waits: *waits,
+                taken: *taken,
+                stops,
+                only: *only,
+            }
         };
         // Periods came as whole microseconds.
         let active = |(robot, period): (&u32, &Duration)| ActiveMemory {
@@ -124,6 +160,7 @@ impl OpenLuggage {
             broken: self.broken.iter().copied().collect(),
             gone: self.gone.clone(),
             left: self.left.values().cloned().collect(),
+            left_visits: self.left_visits.clone(),
             seen: self.seen,
             changed: self.changed,
         }
@@ -132,8 +169,8 @@ impl OpenLuggage {
     /// The state of a master that goes on.
     pub(super) fn of(memory: OpenMemory) -> OpenLuggage {
         let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, refused, waits, taken } = piece;
-            (luggage, Piece { from, to, refused: refused.into_iter().collect(), waits, taken })
+            let PieceMemory { luggage, from, to, refused, waits, taken, stops, only } = piece;
+            (luggage, Piece { from, to, refused: refused.into_iter().collect(), waits, taken, stops, only })
         };
         let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
         OpenLuggage {
@@ -144,14 +181,27 @@ impl OpenLuggage {
             broken: memory.broken.into_iter().collect(),
             gone: memory.gone,
             left: memory.left.into_iter().map(|left| (left.robot, left)).collect(),
+            left_visits: memory.left_visits,
             seen: memory.seen,
             changed: memory.changed,
         }
     }
 
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
-        self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new(), waits: true, taken: None });
+        self.pieces.insert(luggage, Piece { from, to, waits: true, ..Piece::default() });
         self.changed = true;
+    }
+
+    pub(super) fn add_visit(&mut self, visit: &Visit) {
+        let ([from, to], stops) = (visit.ends(), visit.stops.clone());
+        let only = Some(visit.robot).filter(|robot| *robot != 0);
+        self.pieces.insert(visit.visit, Piece { from, to, stops, only, waits: true, ..Piece::default() });
+        self.changed = true;
+    }
+
+    /// The visit of this number.
+    pub(super) fn visit(&self, number: u32) -> Option<Visit> {
+        self.pieces.get(&number)?.visit(number)
     }
 
     /// The lowest number of open luggage, and the number of other pieces.
@@ -201,7 +251,7 @@ impl OpenLuggage {
                     piece.from = left.block;
                 }
                 (piece.waits, piece.taken) = (true, None);
-                again.push((robot, EventLuggage::request(*luggage, piece.from, piece.to)));
+                again.push((robot, piece.request(*luggage)));
             }
         }
         again
@@ -223,6 +273,9 @@ impl OpenLuggage {
             self.broken.remove(&robot.robot);
             self.breaking.remove(&robot.robot);
             self.changed |= self.active.remove(&robot.robot).is_some();
+            let left = |piece: &Piece| !piece.stops.is_empty() && piece.taken == Some(robot.robot);
+            let left = self.pieces.iter().filter(|(_, piece)| left(piece));
+            self.left_visits.extend(left.map(|(luggage, _)| *luggage));
         }
         is_new
     }
@@ -250,9 +303,9 @@ impl OpenLuggage {
 
     /// Requests that wait for a robot, as luggage and as calls for help, without those that this robot refused.
     pub(super) fn waiting_for(&self, robot: u32) -> (Vec<EventLuggage>, Vec<CriticalSituation>) {
-        let open = |luggage: u32| self.pieces.get(&luggage).is_some_and(|piece| !piece.refused.contains(&robot));
+        let open = |luggage: u32| self.pieces.get(&luggage).is_some_and(|piece| piece.is_for(robot));
         let waiting = self.pieces.iter().filter(|(luggage, piece)| piece.waits && open(**luggage));
-        let luggage = waiting.map(|(luggage, piece)| EventLuggage::request(*luggage, piece.from, piece.to));
+        let luggage = waiting.map(|(luggage, piece)| piece.request(*luggage));
         let helps = self.helps.iter().filter(|(luggage, _)| open(**luggage)).map(|(_, help)| help.clone());
         (luggage.collect(), helps.collect())
     }
@@ -272,10 +325,24 @@ impl OpenLuggage {
             LuggageStage::Refused => {
                 if let Some(piece) = self.pieces.get_mut(&response.luggage) {
                     self.changed |= piece.refused.insert(response.robot);
+                    if !piece.stops.is_empty() && piece.taken == Some(response.robot) {
+                        self.left_visits.push(response.luggage);
+                    }
                 }
             }
             LuggageStage::Interest | LuggageStage::Release => {}
         }
+    }
+
+    /// Requests again the visits that a robot left.
+    pub(super) fn visit_again(&mut self) -> Vec<EventLuggage> {
+        let left = std::mem::take(&mut self.left_visits);
+        let again = left.into_iter().filter_map(|luggage| {
+            let piece = self.pieces.get_mut(&luggage).filter(|piece| piece.taken.is_some() && piece.only.is_none())?;
+            (piece.waits, piece.taken) = (true, None);
+            Some(piece.request(luggage))
+        });
+        again.collect()
     }
 
     /// Removes luggage that no robot can bring: every robot refused it, or no robot is left. Returns number, origin and
@@ -288,9 +355,8 @@ impl OpenLuggage {
             return Vec::new();
         }
         let OpenLuggage { pieces, helps, active, broken, .. } = self;
-        let can = |piece: &Piece| {
-            active.keys().filter(|robot| !broken.contains(robot)).any(|robot| !piece.refused.contains(robot))
-        };
+        let can =
+            |piece: &Piece| active.keys().filter(|robot| !broken.contains(robot)).any(|robot| piece.is_for(*robot));
         let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
         let hopeless: Vec<_> = hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect();
         hopeless.iter().for_each(|(luggage, ..)| _ = helps.remove(luggage));

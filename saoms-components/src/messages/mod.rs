@@ -4,7 +4,9 @@
 mod environment;
 mod movement;
 mod team;
+mod visit;
 
 pub use environment::*;
 pub use movement::*;
 pub use team::*;
+pub use visit::*;

@@ -2,7 +2,7 @@ use saoms_api::{Context, Failure, Record, info, record, warn};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
-use crate::messages::{Collision, LuggageStage};
+use crate::messages::{Collision, FIRST_VISIT, LuggageStage};
 
 use super::hardware_client::Reply;
 use super::knowledge::JobEnd;
@@ -191,12 +191,25 @@ impl RobotKnowledge {
         }
     }
 
+    /// The robot is at the next block that it visits; after the last one its job is done.
+    pub(super) fn visit(&mut self, context: &mut Context<'_>) {
+        let (Some(job), false) = (self.job, self.stops.is_empty()) else { return };
+        let stop = self.stops.remove(0);
+        info!(context, "visits {stop} for visit {}", job.luggage - FIRST_VISIT);
+        if self.stops.is_empty() {
+            self.untold = Some(JobEnd { job, stage: LuggageStage::Delivered });
+            self.tally.delivered += 1;
+            self.drop_job();
+        }
+    }
+
     /// Ends the job, so that the robot is free again.
     pub(super) fn drop_job(&mut self) {
         let variables = &mut self.variables;
         (variables.busy, variables.transporter, variables.has_luggage) = (false, false, false);
         variables.healer = false;
         self.job = None;
+        self.stops.clear();
     }
 
     /// Reports a collision if no world does: the robot that enters a block which another robot announced as its own

@@ -3,7 +3,7 @@ use saoms_api::Field;
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage};
 
-/// Luggage that a robot brings, or is interested in.
+/// Luggage that a robot brings, or is interested in; or blocks that it visits, the first and the last one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub struct Job {
     /// Number of the luggage.

@@ -84,6 +84,11 @@ pub struct RobotKnowledge {
     /// Luggage that the robot brings, or is interested in.
     #[entry]
     pub job: Option<Job>,
+    /// Blocks that it still visits for its job, in this order; none if the job is luggage.
+    #[entry(quiet)]
+    pub stops: Vec<Block>,
+    /// True if its job, or the last one, is to visit blocks.
+    pub(super) visits: bool,
     /// State of the robot.
     #[entry(flatten)]
     pub variables: Variables,
@@ -179,6 +184,8 @@ impl RobotKnowledge {
             reserve: RESERVE,
             must_charge: false,
             job: None,
+            stops: Vec::new(),
+            visits: false,
             variables: Variables::default(),
             stopped: false,
             shut_down: false,
@@ -238,9 +245,13 @@ impl RobotKnowledge {
         (is_idle && !has_work && !knows_work && !self.offers_help).then(|| "luggage".to_owned())
     }
 
-    /// Next destination of its job: the block where it collects, then the block where it deposits.
+    /// Next destination of its job: the block where it collects, then the block where it deposits; or the next block
+    /// that it visits.
     pub fn destination(&self) -> Option<Block> {
         let job = self.job.as_ref().filter(|_| self.variables.busy)?;
+        if let Some(stop) = self.stops.first() {
+            return Some(*stop);
+        }
         Some(if self.variables.has_luggage { job.to } else { job.from })
     }
 }

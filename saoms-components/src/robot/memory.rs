@@ -27,6 +27,8 @@ struct Memory {
     reserve: u32,
     must_charge: bool,
     job: Option<Job>,
+    stops: Vec<Block>,
+    visits: bool,
     variables: Variables,
     shut_down: bool,
     stands_in_for: Option<u32>,
@@ -90,6 +92,8 @@ impl RobotKnowledge {
             reserve: self.reserve,
             must_charge: self.must_charge,
             job: self.job,
+            stops: self.stops.clone(),
+            visits: self.visits,
             variables: self.variables,
             shut_down: self.shut_down,
             stands_in_for: self.stands_in_for,
@@ -126,6 +130,7 @@ impl RobotKnowledge {
         (self.charge_at, self.asked_to_charge) = (memory.battery.charge_at, memory.battery.asked_to_charge);
         (self.reserve, self.must_charge) = (memory.reserve, memory.must_charge);
         (self.job, self.variables, self.shut_down) = (memory.job, memory.variables, memory.shut_down);
+        (self.stops, self.visits) = (memory.stops, memory.visits);
         (self.stands_in_for, self.relieved) = (memory.stands_in_for, memory.relieved);
         self.validator.restore(memory.speakers);
         self.lists.restore(memory.lists);

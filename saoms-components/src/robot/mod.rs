@@ -30,7 +30,7 @@ use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, T
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{COLLISION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST};
+use crate::messages::{COLLISION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST, VISIT};
 
 pub use battery::{Battery, Consumption};
 pub use job::Job;
@@ -47,8 +47,9 @@ const ASSISTANCE: &str = "assistance";
 
 /// Brings luggage from one block to another, together with other robots.
 ///
-/// The robot starts at its charger. It takes an interest in luggage that waits, goes if no other robot is closer,
-/// collects the luggage, brings it to its destination and deposits it, and charges its battery at its charger.
+/// The robot starts at its charger, or at the block of `startX` and `startY`. It takes an interest in luggage that
+/// waits, goes if no other robot is closer, collects the luggage, brings it to its destination and deposits it, and
+/// charges its battery at its charger.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.Robot",
@@ -78,7 +79,7 @@ const ASSISTANCE: &str = "assistance";
         )
     ),
     publishes(COLLISION),
-    subscribes(ROBOT_LIST, EVENT_LUGGAGE, POSITION, FAULT),
+    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
@@ -105,9 +106,11 @@ impl Component for Robot {
     fn new(properties: RobotProperties) -> Result<Self, Failure> {
         let number = properties.number()?;
         let charge_block = properties.charge_block(number)?;
+        properties.check_sleep(charge_block)?;
         let battery = Battery::new(properties.battery, properties.consumption()?);
         let name = properties.id.trim().to_owned();
         let mut knowledge = Box::new(RobotKnowledge::new(name, number, charge_block, battery));
+        (knowledge.block, knowledge.next) = (properties.start(charge_block), properties.start(charge_block));
         knowledge.policy = properties.policy;
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;

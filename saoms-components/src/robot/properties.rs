@@ -32,6 +32,12 @@ pub struct RobotProperties {
     /// Row of the block with its charger; by default the robot's number.
     #[property(range = 0..)]
     pub(crate) charge_y: Option<i32>,
+    /// Column of the block where the robot starts; by default that of its charger.
+    #[property(range = 0..)]
+    pub(crate) start_x: Option<i32>,
+    /// Row of the block where the robot starts; by default that of its charger.
+    #[property(range = 0..)]
+    pub(crate) start_y: Option<i32>,
     /// Battery level at the start.
     #[property(default = 100.0, range = 0.0..=100.0, unit = "%")]
     pub(crate) battery: f64,
@@ -106,6 +112,22 @@ impl RobotProperties {
                 "add `dischargePerBlock` or `dischargePerSecond`, or remove `chargePerSecond`",
             ),
         }
+    }
+
+    /// Block where the robot with this charger starts.
+    pub(crate) fn start(&self, charger: Block) -> Block {
+        Block::new(self.start_x.unwrap_or(charger.x), self.start_y.unwrap_or(charger.y))
+    }
+
+    /// A finding if the robot would start asleep where it cannot charge.
+    pub(crate) fn check_sleep(&self, charger: Block) -> Result<(), Failure> {
+        if !self.asleep || self.start(charger) == charger {
+            return Ok(());
+        }
+        let property = if self.start_x.is_some() { "startX" } else { "startY" };
+        let message = "this robot starts asleep, but not at its charger";
+        let help = "remove `startX` and `startY`, or `asleep`: a robot that sleeps charges at its charger";
+        Err(Finding::new(Place::property(property), message).help(help).into())
     }
 
     pub(crate) fn charge_block(&self, number: u32) -> Result<Block, Failure> {

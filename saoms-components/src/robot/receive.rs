@@ -5,7 +5,8 @@ use saoms_api::{Context, Failure, Header, Region, Subscription, record, warn};
 use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
 use crate::grid::Block;
 use crate::messages::{
-    EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList,
+    EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList, VISIT,
+    Visit, is_visit,
 };
 use crate::validation::Validate;
 
@@ -24,6 +25,7 @@ const SMALL: usize = 4 * (2 * (HEARING + SLACK) as usize + 1).pow(2);
 pub(super) struct Topics {
     robots: Subscription<RobotList>,
     luggage: Subscription<EventLuggage>,
+    visits: Subscription<Visit>,
     positions: Subscription<Position>,
     faults: Subscription<Fault>,
     /// The middle of the region of which positions are heard; `None` while it is the whole map.
@@ -35,6 +37,7 @@ impl Topics {
         Ok(Topics {
             robots: context.subscribe(&ROBOT_LIST)?,
             luggage: context.subscribe(&EVENT_LUGGAGE)?,
+            visits: context.subscribe(&VISIT)?,
             positions: context.subscribe(&POSITION)?,
             faults: context.subscribe(&FAULT)?,
             hears_around: None,
@@ -71,6 +74,7 @@ impl RobotKnowledge {
     /// The region in which positions are heard cannot be set.
     pub(super) fn hear(&mut self, topics: &mut Topics, context: &mut Context<'_>) -> Result<(), Failure> {
         self.hear_robots(topics.robots, context);
+        self.hear_visits(topics.visits, context);
         self.hear_luggage(topics.luggage, context);
         self.hear_positions(topics.positions, context);
         if self.policy == Policy::Safe {
@@ -171,10 +175,21 @@ impl RobotKnowledge {
         });
     }
 
+    /// Handles which blocks are to be visited.
+    fn hear_visits(&mut self, visits: Subscription<Visit>, context: &mut Context<'_>) {
+        for (header, visit) in context.receive(&visits).with_headers() {
+            if self.policy == Policy::Safe && self.accepts(visit, header, context) {
+                self.lists.requests.hear_visit(visit);
+            }
+        }
+    }
+
     /// Handles messages about luggage.
     fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &mut Context<'_>) {
         for (header, event) in context.receive(&luggage).with_headers() {
-            if self.accepts(event, header, context) {
+            // The manual's rules know no blocks to visit.
+            let is_for_policy = !is_visit(event.luggage) || self.policy == Policy::Safe;
+            if self.accepts(event, header, context) && is_for_policy {
                 self.lists.requests.hear(event, header);
             }
         }

@@ -16,6 +16,10 @@ impl RobotKnowledge {
         context.send(&luggage, job.response(self.number, self.block, stage))?;
         if stage == LuggageStage::Refused {
             self.lists.requests.refuse(job.luggage);
+            if self.visits {
+                // The master knows all the blocks, and asks the others.
+                return Ok(());
+            }
             context.send(&luggage, EventLuggage::request(job.luggage, job.from, job.to))?;
         }
         Ok(())
@@ -35,6 +39,8 @@ impl RobotKnowledge {
     /// Kind of its critical situation.
     pub fn critical_kind(&self) -> CriticalKind {
         match self.job {
+            // Nobody takes over blocks to visit: the master asks for them again.
+            Some(_) if self.visits => CriticalKind::Idle,
             Some(_) if self.variables.has_luggage => CriticalKind::CarriesLuggage,
             Some(_) => CriticalKind::OnTheWay,
             None => CriticalKind::Idle,
@@ -43,7 +49,8 @@ impl RobotKnowledge {
 
     /// Its request for a healer.
     pub fn situation(&self, kind: CriticalKind) -> CriticalSituation {
-        let (luggage, from, to) = self.job.map_or((0, self.block, self.block), |job| (job.luggage, job.from, job.to));
+        let job = self.job.filter(|_| !self.visits);
+        let (luggage, from, to) = job.map_or((0, self.block, self.block), |job| (job.luggage, job.from, job.to));
         CriticalSituation {
             critical: self.number,
             block: self.block,

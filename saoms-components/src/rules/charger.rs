@@ -1,4 +1,4 @@
-//! Rule: a charger is on a block that no robot can enter.
+//! Rule: a robot starts, or has its charger, on a block that no robot can enter.
 
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
@@ -10,7 +10,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5002",
         name: "charger-place",
-        meaning: "The charger of a robot is outside the map of its world, or on a blocked block.",
+        meaning: "The charger of a robot, or the block where it starts, is outside the map of its world, or blocked.",
         severity: Severity::Error,
         rule: None,
     },
@@ -33,7 +33,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         for (_, robot) in inside[first..].iter().take_while(|(world, _)| *world == area.index) {
             // One that is not wired drives on the blocks all the same.
             let severity = if robot.world.is_some() { Severity::Error } else { Severity::Warning };
-            findings.extend(on_map(fleet, &area, robot).map(|finding| finding.severity(severity)));
+            let found = on_map(fleet, &area, robot).into_iter().chain(starts_on_map(fleet, &area, robot));
+            findings.extend(found.map(|finding| finding.severity(severity)));
         }
     }
     findings
@@ -48,4 +49,12 @@ fn on_map(fleet: &FleetView<'_>, area: &WorldMap, robot: &FleetRobot) -> Option<
     let help = "choose a free block: `chargeX` is the column of the charger, `chargeY` is its row (by default the \
         robot's number)";
     Some(area.explain(Finding::new(place, message).help(help), robot.charger))
+}
+
+/// A finding if the robot cannot be where it starts, which is not its charger.
+fn starts_on_map(fleet: &FleetView<'_>, area: &WorldMap, robot: &FleetRobot) -> Option<Finding> {
+    let problem = area.problem(robot.start).filter(|_| robot.start != robot.charger)?;
+    let message = format!("robot {} starts at {}, {problem}", robot.number, robot.start);
+    let help = "choose a free block: `startX` is its column, `startY` is its row";
+    Some(area.explain(Finding::new(robot.start_place(fleet), message).help(help), robot.start))
 }

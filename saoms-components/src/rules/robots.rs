@@ -16,8 +16,10 @@ use crate::world::World;
 pub(super) struct FleetRobot {
     pub(super) index: usize,
     pub(super) number: u32,
-    /// Block of its charger, where it starts.
+    /// Block of its charger.
     pub(super) charger: Block,
+    /// Block where it starts: by default its charger.
+    pub(super) start: Block,
     /// Index of its world.
     pub(super) world: Option<usize>,
     /// Index of the world whose blocks it drives on: its own, or, where it is wired to none, the one that hears of it.
@@ -77,13 +79,14 @@ impl Fact for Robots {
         known.extend(fleet.all::<Robot>().filter_map(|(index, properties)| {
             let number = properties.number().ok()?;
             let charger = properties.charge_block(number).ok()?;
+            let start = properties.start(charger);
             let component = &fleet.components()[index];
             let world = component.target("world");
             let ground = world.or_else(|| match hearing.worlds_of_robots(component.topic(ROBOT_LIST.name())) {
                 [world] if !misses => Some(*world),
                 _ => None,
             });
-            Some(FleetRobot { index, number, charger, world, ground, properties })
+            Some(FleetRobot { index, number, charger, start, world, ground, properties })
         }));
         Robots {
             known,
@@ -145,6 +148,14 @@ impl FleetRobot {
     /// Place of the column of the robot's charger in the composite, as far as it is given.
     pub(super) fn column_place(&self, fleet: &FleetView<'_>) -> Place {
         self.first_given(fleet, &["chargeX", "chargeY", "ID"]).or_own("chargeY")
+    }
+
+    /// Place of the robot's start in the composite, as far as it is given.
+    pub(super) fn start_place(&self, fleet: &FleetView<'_>) -> Place {
+        match self.start == self.charger {
+            true => self.charger_place(fleet),
+            false => self.first_given(fleet, &["startX", "startY"]),
+        }
     }
 
     /// Place of the robot's number in the composite.

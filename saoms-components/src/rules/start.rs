@@ -14,7 +14,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5003",
         name: "start-shared",
-        meaning: "Two robots start on the same block. A robot starts at its charger.",
+        meaning: "Two robots start on the same block. A robot starts at its charger, unless `startX` or `startY` says otherwise.",
         severity: Severity::Error,
         rule: None,
     },
@@ -35,32 +35,37 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         Some(world) => (Some(world), ""),
         None => (None, components[robot.index].topic(ROBOT_LIST.name())),
     };
-    // Robots that cannot be at their charger are reported by another rule.
+    // Robots that cannot be where they start are reported by another rule.
     let off = off_map(fleet, &robots);
     let mut findings = Vec::new();
-    for (robot, other) in sharing(&robots, |robot| (ground(robot), robot.charger.y, robot.charger.x)) {
+    for (robot, other) in sharing(&robots, |robot| (ground(robot), robot.start.y, robot.start.x)) {
         // Robots with the same number are reported by another rule.
         if other.number != robot.number && !off.contains(&robot.index) {
-            let message = format!(
-                "robots {} and {} both start at {}: their chargers are on the same block",
-                other.number, robot.number, robot.charger
-            );
+            let at_chargers = [other, robot].iter().all(|one| one.start == one.charger);
+            let (why, help) = match at_chargers {
+                true => (
+                    ": their chargers are on the same block",
+                    "move the charger of one robot with `chargeX` and `chargeY`",
+                ),
+                false => ("", "move the start of one robot with `startX` and `startY`"),
+            };
+            let message = format!("robots {} and {} both start at {}{why}", other.number, robot.number, robot.start);
             findings.push(
-                Finding::new(robot.charger_place(fleet), message)
-                    .label(other.charger_place(fleet), "the first robot")
-                    .help("move the charger of one robot with `chargeX` and `chargeY`"),
+                Finding::new(robot.start_place(fleet), message)
+                    .label(other.start_place(fleet), "the first robot")
+                    .help(help),
             );
         }
     }
     findings
 }
 
-/// The robots that have the charger of another one, and no map has its block.
+/// The robots that start where another one does, and no map has that block.
 fn off_map(fleet: &FleetView<'_>, robots: &[FleetRobot]) -> HashSet<usize> {
     let mut off = HashSet::new();
     for area in areas(fleet) {
         let inside = robots.iter().filter(|robot| robot.ground == Some(area.index));
-        off.extend(inside.filter(|robot| area.problem(robot.charger).is_some()).map(|robot| robot.index));
+        off.extend(inside.filter(|robot| area.problem(robot.start).is_some()).map(|robot| robot.index));
     }
     off
 }

@@ -1,7 +1,7 @@
 use std::fmt;
 
 use crate::grid::{Block, Map};
-use crate::messages::{EventLuggage, LuggageStage};
+use crate::messages::{EventLuggage, LuggageStage, is_visit};
 
 /// Reason for rejecting a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub(crate) enum Problem {
     Blocked { block: Block },
     /// Luggage that is already at its destination.
     There { block: Block },
+    /// A visit without blocks, or with the number of luggage.
+    Visit,
     /// A move over more than one block.
     Jump { from: Block, to: Block },
     /// A battery level that is no percentage.
@@ -42,19 +44,25 @@ impl Problem {
         if inside { Ok(()) } else { Err(Problem::Outside { block, area: size() }) }
     }
 
-    /// Checks a request to bring luggage.
+    /// Checks a block where a robot has to go.
+    pub(crate) fn of_free(block: Block, area: Option<&Map>) -> Result<(), Problem> {
+        Problem::of_block(block, area)?;
+        match area.is_some_and(|area| !area.is_free(block)) {
+            true => Err(Problem::Blocked { block }),
+            false => Ok(()),
+        }
+    }
+
+    /// Checks a request to bring luggage, or to visit blocks.
     pub(crate) fn of_request(request: &EventLuggage, area: Option<&Map>) -> Result<(), Problem> {
         let EventLuggage { robot, from, to, .. } = *request;
         if robot != 0 || request.stage != LuggageStage::Request {
             return Err(Problem::Response { robot });
         }
         for block in [from, to] {
-            Problem::of_block(block, area)?;
-            if area.is_some_and(|area| !area.is_free(block)) {
-                return Err(Problem::Blocked { block });
-            }
+            Problem::of_free(block, area)?;
         }
-        if from == to { Err(Problem::There { block: to }) } else { Ok(()) }
+        if from == to && !is_visit(request.luggage) { Err(Problem::There { block: to }) } else { Ok(()) }
     }
 }
 
@@ -82,6 +90,9 @@ impl fmt::Display for Problem {
             }
             Problem::There { block } => {
                 write!(formatter, "found {block} twice, expected another block to bring it to")
+            }
+            Problem::Visit => {
+                formatter.write_str("found no blocks, or a number of luggage, expected blocks and a number of visits")
             }
             Problem::Jump { from, to } => {
                 write!(formatter, "found {to} after {from}, expected the same block or one beside it")

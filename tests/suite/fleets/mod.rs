@@ -15,4 +15,5 @@ mod replace;
 mod shifts;
 mod slow;
 mod sustained;
+mod visits;
 mod waiting;

@@ -120,10 +120,12 @@ pub(super) fn meaning(word: &str) -> &'static str {
     match word {
         "at" => "once, at a time from the start",
         "from" => "repeatedly, from this time on",
-        "then" => "after the event of the line before",
+        "then" => "after the event of the line before; or the next block of a `visit`",
+        "by" => "the only robot that may do it",
         "every" => "the time from one event to the next",
         "until" => "the time after which the event is not repeated",
         "luggage" => "luggage waits at a block to be brought `to` another one",
+        "visit" => "a robot goes to these blocks, in this order",
         "landing" => "an airplane lands with this number of pieces of luggage",
         "takeoff" => "an airplane takes off with this number of pieces of luggage",
         "breakdown" => "a robot breaks down where it is",

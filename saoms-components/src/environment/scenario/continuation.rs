@@ -69,6 +69,14 @@ fn follow(words: &mut Tokenizer<'_>) -> Result<(), Vec<Continuation>> {
                 drawn(words, Continuation::Place)?;
             }
         }
+        "visit" => loop {
+            drawn(words, Continuation::Place)?;
+            match taken(words, || ["then", "by"].map(Continuation::Word).into())? {
+                "then" => {}
+                "by" => break drawn(words, Continuation::Robot)?,
+                _ => break,
+            }
+        },
         "landing" | "takeoff" => drawn(words, Continuation::Pieces)?,
         "breakdown" | "gone" => drawn(words, Continuation::Robot)?,
         _ => {}

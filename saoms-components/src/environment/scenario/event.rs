@@ -10,7 +10,7 @@ use super::{EventSpec, Spanned};
 use crate::grid::Block;
 use crate::text::TextFault;
 
-pub(super) const KINDS: [&str; 6] = ["luggage", "landing", "takeoff", "breakdown", "gone", "end"];
+pub(super) const KINDS: [&str; 7] = ["luggage", "visit", "landing", "takeoff", "breakdown", "gone", "end"];
 const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
 const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
 
@@ -37,6 +37,7 @@ pub(super) fn read(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Res
 pub(super) fn example(line: &str) -> &'static str {
     match line.split_whitespace().find(|word| KINDS.contains(word)) {
         Some("landing" | "takeoff") => "as in `at 3s landing 4`",
+        Some("visit") => "as in `at 6s visit (3,1) then (5,2) by Robot002`",
         Some("breakdown" | "gone") => "as in `at 9s breakdown Robot002`",
         Some("end") => "as in `at 60s end`",
         None if line.contains("repair") => "a robot that broke down is not repaired",
@@ -92,12 +93,23 @@ fn own(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
             }
             EventSpec::Luggage { from, to }
         }
+        "visit" => visit(words)?,
         "landing" => EventSpec::Landing(drawn(words, pieces).and_then(|drawn| some(words, drawn))?),
         "takeoff" => EventSpec::Takeoff(drawn(words, pieces).and_then(|drawn| some(words, drawn))?),
         "end" => EventSpec::End,
         "gone" => EventSpec::Gone(robots(words)?),
         _ => EventSpec::Breakdown(robots(words)?),
     })
+}
+
+/// Blocks to visit, and perhaps the robot that does.
+fn visit(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
+    let mut stops = vec![spot(words)?];
+    while words.take("then") {
+        stops.push(spot(words)?);
+    }
+    let by = if words.take("by") { Some(robots(words)?) } else { None };
+    Ok(EventSpec::Visit { stops, by })
 }
 
 /// A robot, or numbers to draw one of.

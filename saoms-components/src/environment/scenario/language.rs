@@ -12,8 +12,8 @@ submit! { PropertyLanguage { name: "scenario", words: WORDS, check, complete, ex
 
 /// The words of the language.
 const WORDS: &[&str] = &[
-    "at", "from", "then", "every", "times", "until", "random", "to", "luggage", "landing", "takeoff", "breakdown",
-    "gone", "end",
+    "at", "from", "then", "every", "times", "until", "random", "to", "luggage", "visit", "by", "landing", "takeoff",
+    "breakdown", "gone", "end",
 ];
 
 /// Judges scenarios with the events that classes take.

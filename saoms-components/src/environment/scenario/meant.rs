@@ -28,6 +28,8 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("job", "luggage"),
     ("task", "luggage"),
     ("order", "luggage"),
+    ("goto", "visit"),
+    ("go", "visit"),
     ("arrival", "landing"),
     ("departure", "takeoff"),
     ("take-off", "takeoff"),

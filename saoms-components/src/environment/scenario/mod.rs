@@ -70,6 +70,13 @@ pub enum EventSpec {
         /// Destination of the luggage.
         to: Spanned<Spot>,
     },
+    /// Blocks that a robot visits.
+    Visit {
+        /// The blocks, in their order.
+        stops: Vec<Spanned<Spot>>,
+        /// The only robot that may do it, given as for a breakdown.
+        by: Option<Spanned<RandomRange<u32>>>,
+    },
     /// A landing with the number of pieces of luggage that are expected.
     Landing(RandomRange<u32>),
     /// A take-off with the number of pieces of luggage that are expected.
@@ -175,10 +182,11 @@ impl Scenario {
 
     /// True if the scenario draws blocks from the whole area, so that the map is needed.
     pub fn needs_area(&self) -> bool {
-        let spots = self.lines.iter().filter_map(|line| match &line.event {
-            EventSpec::Luggage { from, to } => Some([from.value, to.value]),
-            _ => None,
-        });
-        spots.flatten().any(|spot| spot == Spot::Anywhere)
+        let anywhere = |spot: &Spanned<Spot>| spot.value == Spot::Anywhere;
+        self.lines.iter().any(|line| match &line.event {
+            EventSpec::Luggage { from, to } => anywhere(from) || anywhere(to),
+            EventSpec::Visit { stops, .. } => stops.iter().any(anywhere),
+            _ => false,
+        })
     }
 }

@@ -1,10 +1,10 @@
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use saoms_api::{Cause, Field, Header, Time};
 
 use crate::grid::Block;
-use crate::messages::{EventLuggage, LuggageStage};
+use crate::messages::{EventLuggage, LuggageStage, Visit, is_visit};
 use crate::robot::Job;
 use crate::state::Numbers;
 
@@ -33,6 +33,22 @@ pub struct Request {
     pub needs: u32,
     /// True if this robot found out, while it could take no job, that the luggage is within its reach.
     pub judged: bool,
+    /// Blocks to visit, in place of bringing luggage; none while a visit is not known yet.
+    pub stops: Vec<Block>,
+    /// True if only this robot may visit them.
+    pub reserved: bool,
+}
+
+impl Request {
+    /// True if all is known that a robot has to know to do it.
+    pub fn is_known(&self) -> bool {
+        !is_visit(self.job.luggage) || !self.stops.is_empty()
+    }
+
+    fn learn(&mut self, visit: &Visit) {
+        self.stops.clone_from(&visit.stops);
+        self.reserved = visit.robot != 0;
+    }
 }
 
 impl fmt::Display for Request {
@@ -70,6 +86,8 @@ pub struct Requests {
     refused: Vec<u32>,
     /// Luggage that other robots refused, with the robot.
     refusals: BTreeSet<(u32, u32)>,
+    /// Visits that are not done, without those of other robots alone.
+    visits: BTreeMap<u32, Visit>,
     /// Luggage that a robot took, brought or gave up: a request that only repeats an earlier one does not count.
     settled: Numbers,
 }
@@ -81,6 +99,7 @@ pub(in crate::robot) struct RequestsMemory {
     claimed: Option<Request>,
     refused: Vec<u32>,
     refusals: Vec<Refusal>,
+    visits: Vec<Visit>,
     settled: Numbers,
 }
 
@@ -97,6 +116,7 @@ impl Requests {
             claimed: self.claimed.clone(),
             refused: self.refused.clone(),
             refusals: self.refusals.iter().map(|&(luggage, robot)| Refusal { luggage, robot }).collect(),
+            visits: self.visits.values().cloned().collect(),
             settled: self.settled.clone(),
         }
     }
@@ -104,6 +124,7 @@ impl Requests {
     pub(super) fn restore(&mut self, memory: RequestsMemory) {
         (self.open, self.claimed, self.refused) = (memory.open, memory.claimed, memory.refused);
         self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
+        self.visits = memory.visits.into_iter().map(|visit| (visit.visit, visit)).collect();
         self.settled = memory.settled;
     }
 
@@ -115,7 +136,23 @@ impl Requests {
             claimed: None,
             refused: Vec::new(),
             refusals: BTreeSet::new(),
+            visits: BTreeMap::new(),
             settled: Numbers::default(),
+        }
+    }
+
+    /// Handles which blocks a visit has.
+    pub fn hear_visit(&mut self, visit: &Visit) {
+        if visit.robot != 0 && visit.robot != self.number {
+            return;
+        }
+        for request in self.open.iter_mut().chain(&mut self.claimed) {
+            if request.job.luggage == visit.visit {
+                request.learn(visit);
+            }
+        }
+        if !self.settled.contains(visit.visit) {
+            self.visits.insert(visit.visit, visit.clone());
         }
     }
 
@@ -128,6 +165,9 @@ impl Requests {
         let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
         if gone {
             self.settled.insert(event.luggage);
+        }
+        if matches!(event.stage, LuggageStage::Delivered | LuggageStage::GivenUp) {
+            self.visits.remove(&event.luggage);
         }
         if event.robot == self.number {
             return self.hear_own(event);
@@ -174,14 +214,20 @@ impl Requests {
         let refused = self.refused.contains(&event.luggage);
         if !refused && !known.any(|request| request.job.luggage == event.luggage) {
             let job = Job { luggage: event.luggage, from: event.from, to: event.to };
-            self.open.push(Request {
+            let mut request = Request {
                 job,
                 since: header.sent,
                 cause: header.cause,
                 rivals: Vec::new(),
                 needs: 0,
                 judged: false,
-            });
+                stops: Vec::new(),
+                reserved: false,
+            };
+            if let Some(visit) = self.visits.get(&event.luggage) {
+                request.learn(visit);
+            }
+            self.open.push(request);
         }
     }
 
@@ -200,6 +246,11 @@ impl Requests {
     /// Requests on the list, oldest first.
     pub fn open(&self) -> &[Request] {
         &self.open
+    }
+
+    /// Blocks of a visit; none if it is luggage, or not known.
+    pub fn stops(&self, luggage: u32) -> &[Block] {
+        self.visits.get(&luggage).map_or(&[], |visit| &visit.stops)
     }
 
     /// Requests on the list, mutable.

@@ -187,15 +187,35 @@ impl RobotKnowledge {
 
     /// True if no path leads to a job, or from where it begins to where it ends.
     pub(super) fn is_cut_off_from(&mut self, job: &Job) -> bool {
-        [(self.next, job.from), (job.from, job.to)]
-            .into_iter()
-            .any(|(from, to)| self.routes.between(from, to) == UNREACHABLE)
+        self.moves(self.next, job, false) == UNREACHABLE
+    }
+
+    /// Number of moves from a block through the whole job, or to the end of one whose luggage is on board.
+    fn moves(&mut self, start: Block, job: &Job, has_luggage: bool) -> u32 {
+        let stops = self.stops_of(job);
+        let ends = [job.from, job.to];
+        let ways: &[Block] = match has_luggage {
+            _ if !stops.is_empty() => &stops,
+            true => &ends[1..],
+            false => &ends,
+        };
+        let mut at = start;
+        let legs = ways.iter().map(|to| self.routes.between(std::mem::replace(&mut at, *to), *to));
+        legs.fold(0, u32::saturating_add)
+    }
+
+    /// Blocks to visit for a job; none if it is luggage.
+    fn stops_of(&self, job: &Job) -> Vec<Block> {
+        match self.job {
+            Some(own) if own.luggage == job.luggage => self.stops.clone(),
+            _ => self.lists.requests.stops(job.luggage).to_vec(),
+        }
     }
 
     /// Sets the reserve at the start of a job, or after charging. A robot that would arrive with too little energy
     /// charges between collecting and depositing.
     pub(super) fn set_out(&mut self, job: &Job) {
-        let next = if self.variables.has_luggage { job.to } else { job.from };
+        let next = self.stops.first().copied().unwrap_or(if self.variables.has_luggage { job.to } else { job.from });
         let way = self.routes.between(self.next, next);
         let back = self.routes.between(next, self.charge_block);
         let first = self.energy.pace.job(way, 1).saturating_add(self.energy.pace.job(back, 0));
@@ -251,26 +271,22 @@ impl RobotKnowledge {
 
     /// Number of executions for the rest of a job from here, and the way to the charger.
     fn executions_for(&mut self, job: &Job, has_luggage: bool) -> u32 {
-        let start = self.next;
-        let executions = if has_luggage {
-            self.energy.pace.job(self.routes.between(start, job.to), 1)
-        } else {
-            let way = self.routes.between(start, job.from);
-            self.energy.pace.job(way.saturating_add(self.routes.between(job.from, job.to)), 2)
-        };
+        let moves = self.moves(self.next, job, has_luggage);
+        let executions = self.energy.pace.job(moves, if has_luggage { 1 } else { 2 });
         executions.saturating_add(self.home(job.to))
     }
 
     /// Number of executions for a whole job from the charger and back, without other robots in the way.
     pub(super) fn executions_from_charger(&mut self, job: &Job) -> u32 {
-        let ways = [(self.charge_block, job.from), (job.from, job.to), (job.to, self.charge_block)];
-        let moves = ways.map(|(from, to)| self.routes.between(from, to));
-        self.energy.pace.job_alone(moves.into_iter().fold(0, u32::saturating_add), 2)
+        let moves = self.moves(self.charge_block, job, false);
+        let home = self.routes.between(job.to, self.charge_block);
+        self.energy.pace.job_alone(moves.saturating_add(home), 2)
     }
 
     /// True if a full battery lasts for each half of a job, from the charger and back.
     fn is_within(&mut self, job: &Job, full: u32) -> bool {
-        [job.from, job.to].into_iter().all(|block| {
+        let stops = self.stops_of(job);
+        [job.from, job.to].into_iter().chain(stops).all(|block| {
             let way = self.routes.between(block, self.charge_block);
             is_within(way, self.energy.pace.moving, self.energy.pace.handling, full)
         })

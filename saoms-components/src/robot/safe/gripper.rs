@@ -1,16 +1,18 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
+use crate::grid::Block;
 use crate::hardware::Action;
-use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
+use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage};
 use crate::robot::{Job, JobEnd, RobotKnowledge};
 
-/// Uses the gripper: collects luggage at its block and deposits it at its destination.
+/// Uses the gripper: collects luggage at its block and deposits it at its destination. Notes blocks that the robot
+/// visits.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.GripperMS",
     knowledge = RobotKnowledge,
-    senses("block", "busy", "hasLuggage", "job", "moving", "handling", "lasts", "wayHome"),
-    effects("grip", "untold")
+    senses("block", "busy", "hasLuggage", "job", "stops", "moving", "handling", "lasts", "wayHome"),
+    effects("grip", "untold", "stops")
 )]
 pub struct SafeGripper {
     #[publishes(EVENT_LUGGAGE)]
@@ -24,6 +26,8 @@ pub enum SafeGripperSymptom {
     AtLuggage(Job),
     /// The robot is at the destination of its luggage.
     AtDestination(Job),
+    /// The robot is at the next block that it visits.
+    AtStop(Job, Block),
     /// Luggage was deposited, which is not reported yet.
     Deposited(Job),
     /// Luggage could not be collected, which is not reported yet.
@@ -37,6 +41,8 @@ pub enum SafeGripperDecision {
     Collect(Job),
     /// Start to deposit.
     Deposit(Job),
+    /// Go on to the next block to visit, or end the job.
+    Visit(Job, Block),
     /// Report that the luggage is delivered.
     Tell(Job),
     /// Leave the luggage to other robots.
@@ -51,6 +57,9 @@ impl Recordable for SafeGripperSymptom {
             }
             SafeGripperSymptom::AtDestination(Job { luggage, to, .. }) => {
                 record!(at_destination_of_luggage: "is at {to}, where luggage {luggage} has to go", to, luggage)
+            }
+            SafeGripperSymptom::AtStop(Job { luggage, .. }, block) => {
+                record!(at_block_to_visit: "is at {block}, which visit {visit} has", block, visit = luggage - FIRST_VISIT)
             }
             SafeGripperSymptom::Deposited(Job { luggage, .. }) => {
                 record!(luggage_deposited: "has deposited luggage {luggage}", luggage)
@@ -70,6 +79,9 @@ impl Recordable for SafeGripperDecision {
             }
             SafeGripperDecision::Deposit(Job { luggage, .. }) => {
                 record!(deposits_luggage: "deposits luggage {luggage}", luggage)
+            }
+            SafeGripperDecision::Visit(Job { luggage, .. }, block) => {
+                record!(visits_block: "visits {block} for visit {visit}", block, visit = luggage - FIRST_VISIT)
             }
             SafeGripperDecision::Tell(Job { luggage, .. }) => {
                 record!(announces_delivery: "announces that luggage {luggage} is delivered", luggage)
@@ -117,6 +129,9 @@ impl Loop for SafeGripper {
         if knowledge.hardware.running().is_some() || knowledge.variables.critical || knowledge.stopped {
             return Ok(None);
         }
+        if let Some(stop) = knowledge.stops.first().copied() {
+            return Ok(knowledge.job_here().map(|job| SafeGripperSymptom::AtStop(job, stop)));
+        }
         let has_luggage = knowledge.variables.has_luggage;
         let symptom = if has_luggage { SafeGripperSymptom::AtDestination } else { SafeGripperSymptom::AtLuggage };
         Ok(knowledge.job_here().map(symptom))
@@ -131,6 +146,7 @@ impl Loop for SafeGripper {
         Ok(Some(match symptom {
             SafeGripperSymptom::AtLuggage(job) => SafeGripperDecision::Collect(job),
             SafeGripperSymptom::AtDestination(job) => SafeGripperDecision::Deposit(job),
+            SafeGripperSymptom::AtStop(job, block) => SafeGripperDecision::Visit(job, block),
             SafeGripperSymptom::Deposited(job) => SafeGripperDecision::Tell(job),
             SafeGripperSymptom::Failed(job) => SafeGripperDecision::Return(job),
         }))
@@ -145,6 +161,10 @@ impl Loop for SafeGripper {
         let action = match decision {
             SafeGripperDecision::Collect(job) => Some(Action::collect(job.luggage, job.from)),
             SafeGripperDecision::Deposit(job) => Some(Action::deposit(job.luggage, job.to)),
+            SafeGripperDecision::Visit(..) => {
+                knowledge.visit(context);
+                None
+            }
             SafeGripperDecision::Tell(_) | SafeGripperDecision::Return(_) => None,
         };
         if let Some(action) = action {

@@ -87,6 +87,8 @@ pub(super) struct LuggageLine {
     pub(super) endless: Option<RandomRange<Duration>>,
     pub(super) from: Spanned<Spot>,
     pub(super) to: Spanned<Spot>,
+    /// True if a robot visits the two blocks, and brings nothing.
+    pub(super) is_visit: bool,
 }
 
 impl LuggageLine {
@@ -104,15 +106,24 @@ impl LuggageLine {
     }
 }
 
-/// Luggage of all scenarios, without wrong lines.
+/// Luggage of all scenarios, and blocks to visit, two at a time; without wrong lines.
 pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<LuggageLine> {
     let mut all = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
         for line in scenario.lines() {
-            if let EventSpec::Luggage { from, to } = &line.event {
-                let endless = (line.times.is_none() && line.until.is_none()).then_some(line.every);
-                all.push(LuggageLine { index, text: line.text as usize, endless, from: from.clone(), to: to.clone() });
+            let endless = (line.times.is_none() && line.until.is_none()).then_some(line.every);
+            let text = line.text as usize;
+            let piece = |from: &Spanned<Spot>, to: &Spanned<Spot>, is_visit: bool| {
+                let (from, to) = (from.clone(), to.clone());
+                LuggageLine { index, text, endless, from, to, is_visit }
+            };
+            match &line.event {
+                EventSpec::Luggage { from, to } => all.push(piece(from, to, false)),
+                EventSpec::Visit { stops, .. } => {
+                    all.extend(stops.chunks(2).map(|two| piece(&two[0], &two[two.len() - 1], true)));
+                }
+                _ => {}
             }
         }
     }

@@ -18,7 +18,7 @@ pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5001",
         name: "luggage-place",
-        meaning: "A scenario has luggage at a block that no robot can enter: the block is outside the map, or blocked. Or an \
+        meaning: "A scenario has luggage, or a block to visit, where no robot can be: the block is outside the map, or blocked. Or an \
             event that another class takes is at a block outside the map, which is a warning.",
         severity: Severity::Error,
         rule: None,
@@ -95,11 +95,12 @@ fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget
     let place = piece.place(spot);
     if let Some(block) = spot.value.block() {
         let problem = area.problem(block)?;
-        let message = format!("luggage cannot be at {block}: this block is {problem}");
+        let what = if piece.is_visit { "no robot can visit" } else { "luggage cannot be at" };
+        let message = format!("{what} {block}: this block is {problem}");
         let to = piece.to.value.block().filter(|to| spot.value == piece.from.value && *to != block);
         let finding = match to.filter(|to| !area.map.contains(block) && !area.map.contains(*to)) {
             Some(to) => {
-                let message = format!("luggage cannot be at {block} and {to}: these blocks are {problem}");
+                let message = format!("{what} {block} and {to}: these blocks are {problem}");
                 Finding::new(piece.whole(), message)
             }
             None => Finding::new(place, message),
@@ -115,7 +116,8 @@ fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget
         !budget.admit(1 + columns.len() / 64) || area.map.free_ranges(row, columns.clone()).next().is_some()
     });
     if !is_free {
-        let message = format!("luggage cannot be from {first} to {last}: these blocks are all blocked");
+        let what = if piece.is_visit { "no robot can visit a block" } else { "luggage cannot be" };
+        let message = format!("{what} from {first} to {last}: these blocks are all blocked");
         return Some(Finding::new(place, message).help("choose corners with a free block between them"));
     }
     let (x, y) = (area.map.width() - 1, area.map.height() - 1);

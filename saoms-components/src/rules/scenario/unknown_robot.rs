@@ -45,7 +45,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         // Built on demand, since most scenarios have no breakdowns.
         let mut known: Option<Names<'_>> = None;
         for line in scenario.lines() {
-            let (EventSpec::Breakdown(robot) | EventSpec::Gone(robot)) = &line.event else { continue };
+            let (EventSpec::Breakdown(robot) | EventSpec::Gone(robot) | EventSpec::Visit { by: Some(robot), .. }) =
+                &line.event
+            else {
+                continue;
+            };
             if known.is_none() && !budget.admit(NAME * robots.len()) {
                 return findings;
             }
@@ -62,7 +66,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
 /// True if the rule about scenarios without effect tells that there is no robot at all: which of them one event means
 /// says no more.
 fn is_told(fleet: &FleetView<'_>, scenario: &Scenario) -> bool {
-    let is_luggage = |event: &EventSpec| matches!(event, EventSpec::Luggage { .. });
+    let is_luggage = |event: &EventSpec| matches!(event, EventSpec::Luggage { .. } | EventSpec::Visit { .. });
     fleet.indices::<Robot>().next().is_none()
         && !fleet.misses::<Robot>()
         && !may_be_others(fleet)

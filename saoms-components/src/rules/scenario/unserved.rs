@@ -114,7 +114,9 @@ type First = (usize, Range<usize>);
 /// First event of each kind in a scenario.
 struct FirstEvents {
     events: Option<First>,
+    /// Luggage, or blocks to visit.
     luggage: Option<First>,
+    visits: Option<First>,
     airplanes: Option<First>,
 }
 
@@ -127,7 +129,8 @@ impl FirstEvents {
         };
         FirstEvents {
             events: first(|one| !matches!(one, EventSpec::Raised(_) | EventSpec::End)),
-            luggage: first(|one| matches!(one, EventSpec::Luggage { .. })),
+            luggage: first(|one| matches!(one, EventSpec::Luggage { .. } | EventSpec::Visit { .. })),
+            visits: first(|one| matches!(one, EventSpec::Visit { .. })),
             airplanes: first(|one| matches!(one, EventSpec::Landing(_) | EventSpec::Takeoff(_))),
         }
     }
@@ -170,9 +173,10 @@ impl Other {
 
 /// What hinders the events of one name on the bus.
 struct Served {
-    /// Any event, luggage, and landings and take-offs.
+    /// Any event, luggage, blocks to visit, and landings and take-offs.
     events: Option<Mistake>,
     luggage: Option<Mistake>,
+    visits: Option<Mistake>,
     airplanes: Option<Mistake>,
 }
 
@@ -182,13 +186,19 @@ impl Served {
         Served {
             events: luggage.is_empty().then(|| without_master(fleet, events)),
             luggage: not_brought(fleet, events, &luggage, woken),
+            visits: not_visited(fleet, &luggage),
             airplanes: not_handled(fleet, events),
         }
     }
 
     /// The first event that something hinders, and what that is.
     fn find_mistake<'h>(&'h self, has: &'h FirstEvents) -> Option<(&'h First, &'h Mistake)> {
-        let all = [(&has.events, &self.events), (&has.luggage, &self.luggage), (&has.airplanes, &self.airplanes)];
+        let all = [
+            (&has.events, &self.events),
+            (&has.luggage, &self.luggage),
+            (&has.visits, &self.visits),
+            (&has.airplanes, &self.airplanes),
+        ];
         all.into_iter().find_map(|(first, mistake)| Some((first.as_ref()?, mistake.as_ref()?)))
     }
 }
@@ -271,6 +281,19 @@ fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, wo
         _ => return None,
     };
     Some(Mistake { message, help: help.to_owned(), other: None })
+}
+
+/// Reason why no robot visits blocks.
+fn not_visited(fleet: &FleetView<'_>, luggage: &BTreeSet<&str>) -> Option<Mistake> {
+    let topic = |robot: &FleetRobot| fleet.components()[robot.index].topic(EVENT_LUGGAGE.name());
+    let robots = robots(fleet);
+    let mut hear = robots.iter().filter(|robot| luggage.contains(topic(robot))).peekable();
+    hear.peek()?;
+    hear.all(|robot| robot.properties.policy == Policy::Classic).then(|| Mistake {
+        message: "robots with the policy `classic` visit no blocks, so the run never ends",
+        help: "set the property `policy` of a robot to `safe`, or write luggage in place of the visit".to_owned(),
+        other: None,
+    })
 }
 
 /// Reason why the robots cannot collect luggage: their worlds do not hear where it is.

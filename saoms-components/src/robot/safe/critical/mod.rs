@@ -265,7 +265,7 @@ impl Loop for SafeCriticalSituation {
 
     fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         // Another robot has to take over the rest of the job.
-        if knowledge.job.is_some() && !knowledge.variables.critical {
+        if knowledge.job.is_some() && !knowledge.visits && !knowledge.variables.critical {
             context.send(&self.situations, knowledge.situation(knowledge.critical_kind()))?;
         }
         Ok(())
@@ -335,6 +335,7 @@ impl SafeCriticalSituation {
         knowledge.end_offer(self.was_healer);
         if let Some(job) = situation.job() {
             knowledge.job = Some(job);
+            knowledge.visits = false;
             (knowledge.variables.busy, knowledge.variables.healer) = (true, true);
             knowledge.set_out(&job);
             let luggage = job.luggage;

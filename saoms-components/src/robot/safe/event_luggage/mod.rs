@@ -5,7 +5,7 @@ mod records;
 use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publisher, Saved, Work, info};
 
 use crate::grid::{Block, UNREACHABLE};
-use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
+use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage};
 use crate::robot::lasting::lasting;
 use crate::robot::{ASSISTANCE, Job, JobEnd, Request, RobotKnowledge};
 
@@ -125,6 +125,9 @@ impl Loop for SafeEventLuggage {
     ) -> Result<Option<SafeLuggageDecision>, Failure> {
         Ok(Some(match symptom {
             SafeLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
+                Feasibility::Enough if knowledge.lists.requests.open()[place].reserved => {
+                    SafeLuggageDecision::Visit { place, job }
+                }
                 Feasibility::Enough => SafeLuggageDecision::TakeInterest { place, job },
                 Feasibility::Needs(needs) => SafeLuggageDecision::Postpone { place, needs },
                 Feasibility::Never => {
@@ -148,6 +151,9 @@ impl Loop for SafeEventLuggage {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        if let SafeLuggageDecision::Visit { place, .. } = decision {
+            knowledge.lists.requests.claim(place);
+        }
         let stage = match decision {
             SafeLuggageDecision::TakeInterest { place, job } => {
                 knowledge.lists.requests.claim(place);
@@ -168,12 +174,17 @@ impl Loop for SafeEventLuggage {
                 }
                 (job, LuggageStage::Refused)
             }
-            SafeLuggageDecision::Take(job) => {
+            SafeLuggageDecision::Take(job) | SafeLuggageDecision::Visit { job, .. } => {
                 knowledge.lists.requests.settle();
-                knowledge.variables.busy = true;
+                knowledge.stops = knowledge.lists.requests.stops(job.luggage).to_vec();
+                knowledge.visits = !knowledge.stops.is_empty();
+                (knowledge.variables.busy, knowledge.variables.transporter) = (true, true);
                 knowledge.job = Some(job);
                 knowledge.set_out(&job);
-                info!(context, "takes luggage {} from {} to {}", job.luggage, job.from, job.to);
+                match knowledge.visits {
+                    true => info!(context, "goes to {} for visit {}", job.from, job.luggage - FIRST_VISIT),
+                    false => info!(context, "takes luggage {} from {} to {}", job.luggage, job.from, job.to),
+                }
                 (job, LuggageStage::Taken)
             }
             SafeLuggageDecision::Release(job) => {
@@ -298,7 +309,7 @@ fn leave(job: Job, carries: bool, why: Hindrance) -> SafeLuggageDecision {
 /// can bring it.
 fn judge(knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
     let requests = knowledge.lists.requests.open_mut();
-    let place = requests.iter().position(|request| !request.judged)?;
+    let place = requests.iter().position(|request| !request.judged && request.is_known())?;
     requests[place].judged = true;
     let job = requests[place].job;
     let distance = knowledge.block.distance(job.from);
@@ -320,8 +331,13 @@ fn look_for_luggage(knowledge: &RobotKnowledge, context: &Context<'_>) -> Option
         i128::from(block.distance(request.job.from)).saturating_mul(for_a_block).saturating_sub(waited)
     };
     let suits = |request: &Request| request.needs <= left && closer_rival(request, block, number).is_none();
-    let requests = knowledge.lists.requests.open().iter().enumerate();
-    let best = requests.filter(|(_, request)| suits(request)).min_by_key(|(_, request)| score(request));
+    let requests = || knowledge.lists.requests.open().iter().enumerate();
+    // What is for this robot alone is done in the order of the requests.
+    let own = requests()
+        .find(|(_, request)| request.reserved && request.is_known())
+        .filter(|(_, request)| request.needs <= left);
+    let others = || requests().filter(|(_, request)| !request.reserved && request.is_known() && suits(request));
+    let best = own.or_else(|| others().min_by_key(|(_, request)| score(request)));
     best.map(|(place, request)| {
         let distance = block.distance(request.job.from);
         (SafeLuggageSymptom::Waiting { place, job: request.job, distance }, request.cause)

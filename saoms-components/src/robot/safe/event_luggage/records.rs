@@ -1,6 +1,7 @@
 use saoms_api::{Record, Recordable, record};
 
 use crate::grid::Block;
+use crate::messages::FIRST_VISIT;
 use crate::robot::Job;
 
 /// Luggage that a robot can decide about.
@@ -80,6 +81,13 @@ pub enum SafeLuggageDecision {
         job: Job,
         /// Reason why this robot cannot bring it.
         why: Hindrance,
+    },
+    /// Visit the blocks of a request for this robot alone.
+    Visit {
+        /// Index of the request on the list.
+        place: usize,
+        /// The job.
+        job: Job,
     },
     /// Bring the luggage.
     Take(Job),
@@ -193,6 +201,9 @@ impl Recordable for SafeLuggageDecision {
             }
             SafeLuggageDecision::Take(Job { luggage, from, to }) => {
                 record!(takes_luggage: "takes luggage {luggage} from {from} to {to}", luggage, from, to)
+            }
+            SafeLuggageDecision::Visit { job: Job { luggage, from, .. }, .. } => {
+                record!(goes_to_visit: "goes to {from} for visit {visit}", visit = luggage - FIRST_VISIT, from)
             }
             SafeLuggageDecision::Release(Job { luggage, .. }) => {
                 record!(withdraws_offer_for_luggage: "withdraws its offer to carry luggage {luggage}", luggage)
