@@ -1,6 +1,7 @@
 use std::ops::Range;
 
 use crate::Finding;
+use crate::event::fault::FaultCall;
 use crate::event::{EventCall, Events};
 
 /// The language of the text in a property. A class names it at the property: `#[property(language = "scenario")]`.
@@ -55,6 +56,17 @@ pub struct JudgedTexts {
     pub findings: Vec<Finding>,
     /// The events of classes that the texts have.
     pub raised: Vec<RaisedEvent>,
+    /// The faults of messages and executions that the texts have.
+    pub faults: Vec<RaisedFault>,
+}
+
+/// A fault of messages or executions, in a text of a property.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RaisedFault {
+    /// Index of the text.
+    pub text: usize,
+    /// The fault, with its places in the text.
+    pub call: FaultCall,
 }
 
 /// An event of a class, in a text of a property.

@@ -21,6 +21,7 @@ pub use crate::time::DURATION_UNITS;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use language::{
     Completion, CompletionKind, Explanation, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, RaisedEvent,
+    RaisedFault,
 };
 pub use picture::{PictureRegistration, RunPicture};
 pub use summary::{Counts, RunSummary};

@@ -53,14 +53,16 @@ fn language() -> &'static PropertyLanguage {
 fn judged(text: &str, plays: &[&str]) -> String {
     let plays: Vec<String> = plays.iter().map(|word| (*word).to_owned()).collect();
     let texts = PropertyTexts { property: "scenario", texts: &[text], plays: &plays, events: &events() };
-    let JudgedTexts { findings, raised } = (language().check)(&texts);
+    let JudgedTexts { findings, raised, faults } = (language().check)(&texts);
     let raised = raised.into_iter().map(|one| format!("raises `{}`\n", &text[one.call.bytes()]));
+    let faults =
+        faults.into_iter().map(|one| format!("disturbs by `{}` at `{}`\n", one.call, &text[one.call.bytes.clone()]));
     let found = findings.into_iter().map(|one| {
         let (_, part) = one.place().value_part().unwrap();
         let meant = one.replacement().map_or(String::new(), |meant| format!(", meant `{meant}`"));
         format!("`{}`: {}{meant}\n", &text[part], one.message())
     });
-    raised.chain(found).collect()
+    raised.chain(faults).chain(found).collect()
 }
 
 #[test]
@@ -192,4 +194,24 @@ fn editors_offer_and_explain_them() {
     .assert_eq(&offered("at 1s fi|re size=1").1.unwrap());
     assert_eq!(offered("at 1s e|nd").1.unwrap(), "end: `end`: nothing happens; the run does not end before this time");
     assert_eq!(offered("at 1s end # fi|re").1, None);
+}
+
+#[test]
+fn lines_have_faults_that_the_fleet_plays() {
+    let text = "at 10s for 30s lose 20 % on POSTOPIC from Robot* to Robot2 # here
+        from 1s every 9s 3 times crash Zone restart 2s; then 2s cut A from B;at 5s..20s drift C -1 %";
+    expect![[r#"
+        disturbs by `for 30s lose 20 % on POSTOPIC from Robot* to Robot2` at `lose`
+        disturbs by `crash Zone restart 2s` at `crash`
+        disturbs by `cut A from B` at `cut`
+        disturbs by `drift C -1 %` at `drift`
+    "#]]
+    .assert_eq(&judged(text, &[]));
+    let text = "at 1s lose 120 %; at 2s for 3s crash A; at 2s los 3 %";
+    expect![[r#"
+        `120 %`: found `120 %`, expected a part from 0 % to 100 %, or from 0 to 1
+        `for`: found `for` before `crash`, which happens once
+        `los`: found `los`, expected `luggage` or `fire`, meant `lose`
+    "#]]
+    .assert_eq(&judged(text, &["luggage"]));
 }

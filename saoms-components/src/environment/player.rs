@@ -3,6 +3,7 @@ use std::collections::BinaryHeap;
 use std::time::Duration;
 
 use saoms_api::event::EventCall;
+use saoms_api::event::fault::FaultCall;
 use saoms_api::{Chance, Failure, Field, Time};
 
 use super::scenario::{EventSpec, Line, Scenario};
@@ -32,7 +33,7 @@ pub enum ScenarioEvent {
     Breakdown(u32),
     /// Somebody takes the robot with this number off the floor.
     Gone(u32),
-    /// An event that other classes take, as a line with single values.
+    /// An event that other classes take, or a fault of messages or executions, as a line with single values.
     Raised(String),
     /// No event: the scenario lasts until this time.
     End,
@@ -175,6 +176,7 @@ pub(super) fn draw(event: &EventSpec, chance: &mut Chance, area: Option<&Map>) -
         EventSpec::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
         EventSpec::Breakdown(robot) => Some(ScenarioEvent::Breakdown(robot.value.draw(chance))),
         EventSpec::Gone(robot) => Some(ScenarioEvent::Gone(robot.value.draw(chance))),
+        EventSpec::Raised(event) if FaultCall::is_one(event) => Some(ScenarioEvent::Raised(event.to_string())),
         EventSpec::Raised(event) => {
             let call = EventCall::read(event).ok()?;
             Some(ScenarioEvent::Raised(call.drawn(chance)))

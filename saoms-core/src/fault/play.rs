@@ -134,7 +134,7 @@ impl FaultPlay {
 
     /// Begins a fault of messages.
     pub(crate) fn begin_messages(&mut self, call: &FaultCall, site: &str, now: u64) {
-        let chance = self.next_chance(call);
+        let chance = self.next_chance(call, now);
         self.messages.retain(|fault| fault.until > now);
         self.messages.push(MessageFault {
             kind: call.kind,
@@ -166,11 +166,11 @@ impl FaultPlay {
         }
     }
 
-    /// Chance that depends on the seed and the fault, and not on what else happens.
-    fn next_chance(&mut self, call: &FaultCall) -> Chance {
+    /// Chance that depends on the seed, the fault and its time, so that it is the same without the other faults.
+    fn next_chance(&mut self, call: &FaultCall, now: u64) -> Chance {
         self.begun += 1;
         let text = call.to_string();
-        Chance::new(text.bytes().fold(fold(self.seed, self.begun), |hash, byte| fold(hash, u64::from(byte))))
+        Chance::new(text.bytes().fold(fold(self.seed, now), |hash, byte| fold(hash, u64::from(byte))))
     }
 
     fn count(&mut self, kind: FaultKind) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use saoms_api::event::{Event, EventCall, Events, receiver};
 use saoms_api::extension::LineFault;
-use saoms_lang::assembly::ComponentSpec;
+use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
 
 /// The components of a fleet that take events, as [`Handle::takers`](super::Handle::takers) gives them.
@@ -63,6 +63,11 @@ impl fmt::Display for RaiseError {
 impl std::error::Error for RaiseError {}
 
 impl Takers {
+    /// The takers of a fleet that does not run yet.
+    pub fn of_assembly(assembly: &Assembly) -> Takers {
+        Takers::of((0..).zip(assembly.components.iter().map(|spec| Arc::new(spec.clone()))))
+    }
+
     /// The takers among these components, given with their numbers.
     pub(super) fn of(specs: impl Iterator<Item = (u32, Arc<ComponentSpec>)>) -> Takers {
         let mut all: Vec<Taker> = Vec::new();

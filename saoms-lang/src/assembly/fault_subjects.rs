@@ -1,40 +1,29 @@
 //! What faults can name in a fleet.
 
-use std::collections::BTreeMap;
-
-use saoms_api::event::fault::{FaultSubjects, SubjectTopic};
+use saoms_api::event::fault::FaultSubjects;
 
 use super::ComponentSpec;
 
 /// The components of a fleet and its topics, which faults name.
 pub fn fault_subjects<'s>(specs: impl IntoIterator<Item = &'s ComponentSpec>) -> FaultSubjects {
     let mut subjects = FaultSubjects { is_complete: true, ..FaultSubjects::default() };
-    let mut topics: BTreeMap<String, SubjectTopic> = BTreeMap::new();
     for spec in specs {
         let own = spec.class.declaration();
         subjects.components.push((spec.path.clone(), own.is_periodic()));
         let loops = || spec.loops.iter().map(|one| one.class.declaration());
         for declared in own.publishes.iter().chain(loops().flat_map(|one| &one.publishes)) {
-            note(&mut topics, spec, &declared.name, |topic| &mut topic.writers);
+            note(&mut subjects.topic(spec.topic(&declared.name).into_owned()).writers, &spec.path);
         }
         for declared in own.subscribes.iter().chain(loops().flat_map(|one| &one.subscribes)) {
-            note(&mut topics, spec, &declared.name, |topic| &mut topic.readers);
+            note(&mut subjects.topic(spec.topic(&declared.name).into_owned()).readers, &spec.path);
         }
     }
-    subjects.topics = topics.into_values().collect();
     subjects
 }
 
-fn note(
-    topics: &mut BTreeMap<String, SubjectTopic>,
-    spec: &ComponentSpec,
-    declared: &str,
-    ends: impl Fn(&mut SubjectTopic) -> &mut Vec<String>,
-) {
-    let name = spec.topic(declared).into_owned();
-    let new = || SubjectTopic { name: name.clone(), ..SubjectTopic::default() };
-    let ends = ends(topics.entry(name.clone()).or_insert_with(new));
-    if ends.last() != Some(&spec.path) {
-        ends.push(spec.path.clone());
+/// Adds a component to the ends of a topic, once.
+fn note(ends: &mut Vec<String>, path: &str) {
+    if ends.last().is_none_or(|last| last != path) {
+        ends.push(path.to_owned());
     }
 }

@@ -5,6 +5,7 @@ mod console;
 mod control;
 mod ending;
 mod events;
+pub(super) mod faults;
 mod log_file;
 mod log_lines;
 mod notify;
@@ -42,6 +43,7 @@ use console::Console;
 use control::{Control, NetworkArguments};
 use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers, Unreadable};
+use faults::{FaultScript, Known, report_wrong};
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
 use notify::Notifier;
@@ -105,6 +107,11 @@ pub(crate) struct RunArguments {
     /// luggage (3,1) to (3,10)`; an event without a time happens at once. A wrong line is reported and ignored
     #[arg(long, value_name = "FILE")]
     pub(crate) events: Option<PathBuf>,
+
+    /// Put the faults of this file into the run: lines of a scenario, such as `at 10s for 30s lose 20 % on POSTOPIC`. A
+    /// wrong line is an error before anything starts
+    #[arg(long, value_name = "FILE")]
+    pub(crate) faults: Option<PathBuf>,
 
     /// Keep running when all work is done, for events that are sent later: until `saoms down`, a signal, or the time of
     /// `--for`
@@ -210,6 +217,17 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Some((_, Ok(events))) => Some(events),
         None => None,
     };
+    let mut faults = Vec::new();
+    if let Some(path) = &arguments.faults {
+        let Some(script) = FaultScript::read(path) else { return Exit::WrongInput };
+        match script.events(&Known::of(&assembly), arguments.seed) {
+            Ok(events) => faults = events,
+            Err(wrong) => {
+                report_wrong(&wrong);
+                return Exit::WrongInput;
+            }
+        }
+    }
     let paths = PictureRegistration::linked("paths");
     if arguments.paths.is_some() && paths.is_none() {
         eprint("error: no component class of this program draws paths\n");
@@ -279,6 +297,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     let hold = arguments.stay.then(|| fleet.handle().hold());
     let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
+    for fault in faults {
+        if let Err(why) = fault.play(&fleet.handle()) {
+            fleet.handle().note(Level::Error, why);
+        }
+    }
     if let Some(events) = events {
         events.play(fleet.handle(), arguments.virtual_time, || signals.has_come());
     }
@@ -335,7 +358,7 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
         eprint(&format!("\n{}: nothing was started\n", counted(shown.count(Severity::Error), "error")));
     }
     let mut read = files_read(&compilation, files);
-    read.extend(arguments.events.clone());
+    read.extend(arguments.events.iter().chain(&arguments.faults).cloned());
     let assembly = compilation.output?;
     if assembly.components.is_empty() {
         eprint(

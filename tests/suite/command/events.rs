@@ -261,3 +261,41 @@ fn why_leads_back_to_the_event() {
     let text = stdout(&saoms_in(yard.folder.path(), &why));
     assert!(text.contains("(outside)") && text.contains("luggage (3,1) to (3,4)"), "{text}");
 }
+
+#[test]
+fn faults_of_a_file_are_judged_before_anything_starts_and_played_by_the_seed() {
+    let yard = Yard::new();
+    let write = |text: &str| fs::write(yard.folder.path().join("faults.txt"), text).unwrap();
+    let run = |seed: &str| {
+        let arguments =
+            ["run", "yard.composite", "--virtual", "--for", "30s", "--seed", seed, "--report", "report.json"];
+        saoms_in(yard.folder.path(), &[&arguments[..], &["--faults", "faults.txt", "--short-report"]].concat())
+    };
+    write("at 1s lose 20 % on POSTOPICS\nlose 101 %\n# fine\nat 2s crash Robot1\nat 1s breakdown Robot001\n");
+    let output = run("1");
+    let told = String::from_utf8_lossy(&output.stderr);
+    let expected = "error: faults.txt:1:20: the fleet has no topic `POSTOPICS`; did you mean `POSTOPIC`?
+    at 1s lose 20 % on POSTOPICS
+                       ^^^^^^^^^
+error: faults.txt:2:6: found `101 %`, expected a part from 0 % to 100 %, or from 0 to 1
+    lose 101 %
+         ^^^^^
+error: faults.txt:4:13: the fleet has no component `Robot1`; did you mean `Robot001`?
+    at 2s crash Robot1
+                ^^^^^^
+
+3 errors: nothing was started
+";
+    assert_eq!(output.status.code(), Some(2));
+    assert!(told.ends_with(expected), "{told}");
+    write("at 0s lose 50 %\nat 5s..20s crash Robot001 restart 2s");
+    let report = |seed: &str| {
+        run(seed);
+        let text = fs::read_to_string(yard.folder.path().join("report.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()
+    };
+    let (one, again, other) = (report("1"), report("1"), report("2"));
+    assert_eq!(one["faults"]["applied"]["crash"], 1);
+    assert_eq!(one["trace_hash"], again["trace_hash"]);
+    assert_ne!(one["trace_hash"], other["trace_hash"]);
+}

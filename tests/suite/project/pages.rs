@@ -98,11 +98,24 @@ fn scenarios_are_right() {
     let (_, page) = pages().into_iter().find(|(path, _)| path.ends_with("scenarios.md")).unwrap();
     let scenarios = blocks(&page, "scenario");
     assert!(scenarios.len() >= 4);
+    // Faults name components.
+    let component = |name: &str, class: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.rust class=\"{class}\"/><property name=\"ID\">{name}</property><property name=\"period\">100</property></component>"
+        )
+    };
+    let others = [
+        ("Robot1", "saoms.Robot"),
+        ("Robot2", "saoms.Robot"),
+        ("Robot3", "saoms.Robot"),
+        ("MasterRobot", "saoms.MasterRobot"),
+    ];
+    let others: String = others.iter().map(|(name, class)| component(name, class)).collect();
     for scenario in scenarios {
         let environment = format!(
             "<component name=\"E\"><implementation.rust class=\"saoms.Environment\"/><property name=\"ID\">E</property><property name=\"period\">100</property><property name=\"scenario\">{scenario}</property></component>"
         );
-        let (shown, codes) = faults(&whole(&environment));
+        let (shown, codes) = faults(&whole(&format!("{environment}{others}")));
         assert!(!codes.contains(&"S3014"), "{scenario}\n{shown}");
     }
 }

@@ -28,6 +28,16 @@ pub struct SubjectTopic {
 }
 
 impl FaultSubjects {
+    /// The topic of this name, which is added where it is not known.
+    pub fn topic(&mut self, name: String) -> &mut SubjectTopic {
+        let place = self.topics.iter().position(|topic| topic.name == name);
+        let place = place.unwrap_or_else(|| {
+            self.topics.push(SubjectTopic { name, ..SubjectTopic::default() });
+            self.topics.len() - 1
+        });
+        &mut self.topics[place]
+    }
+
     /// Judges the names of a fault.
     ///
     /// # Errors
@@ -40,7 +50,7 @@ impl FaultSubjects {
             self.component(name, !call.kind.is_of_messages())?;
         }
         if let Some(topic) = &call.topic {
-            self.topic(topic)?;
+            self.known_topic(topic)?;
         }
         if call.kind.is_of_messages() { self.link(call) } else { Ok(()) }
     }
@@ -59,7 +69,7 @@ impl FaultSubjects {
         Err(near(fault, &name.text, paths().chain(paths().filter_map(|path| path.rsplit('/').next()))))
     }
 
-    fn topic(&self, name: &Word) -> Result<(), LineFault> {
+    fn known_topic(&self, name: &Word) -> Result<(), LineFault> {
         if self.topics.iter().any(|topic| is_named(&name.text, &topic.name)) {
             return Ok(());
         }

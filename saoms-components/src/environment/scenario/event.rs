@@ -1,3 +1,4 @@
+use saoms_api::event::fault::{FAULTS, FaultCall};
 use saoms_api::event::{EventCall, is_event_name};
 use saoms_api::extension::LineFault;
 use saoms_api::rule::nearest;
@@ -25,6 +26,7 @@ pub(super) fn read(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Res
             return Err(words.fault(name, message).help(format!("it supports {}", vocabulary.expected())));
         }
         true => own(words)?,
+        false if FaultCall::is_one(name) => return of_fleet(words),
         false => return of_class(words, vocabulary),
     };
     match words.peek() {
@@ -35,6 +37,9 @@ pub(super) fn read(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Res
 
 /// An example of a line with the event that a wrong line has.
 pub(super) fn example(line: &str) -> &'static str {
+    if line.split_whitespace().any(|word| FAULTS.contains(&word)) {
+        return "as in `at 10s for 30s lose 20 % on POSTOPIC`";
+    }
     match line.split_whitespace().find(|word| KINDS.contains(word)) {
         Some("landing" | "takeoff") => "as in `at 3s landing 4`",
         Some("visit") => "as in `at 6s visit (3,1) then (5,2) by Robot002`",
@@ -55,7 +60,7 @@ fn of_class(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Result<Eve
             let swapped = format!("{event} {name}");
             words.wrong(words.span(name, event), "the event before the robot").instead(Some(swapped))
         }
-        _ => words.wrong(name, &expected).instead(nearest(name, vocabulary.names())),
+        _ => words.wrong(name, &expected).instead(nearest(name, vocabulary.names().chain(FAULTS))),
     };
     let rest = words.rest(name);
     let start = words.bytes(name).start;
@@ -72,6 +77,16 @@ fn of_class(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Result<Eve
     words.skip_rest();
     // Its words are read again where it happens: a scenario may have hundreds of thousands of lines.
     Ok(EventSpec::Raised(rest[..call.bytes().end].into()))
+}
+
+/// Reads a fault of messages or executions, which the fleet plays: the rest of the line.
+fn of_fleet(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
+    let name = words.next("a fault")?;
+    let rest = words.rest(name);
+    let start = words.bytes(name).start;
+    let call = FaultCall::read(rest).map_err(|fault| text_fault(fault.moved(start)))?;
+    words.skip_rest();
+    Ok(EventSpec::Raised(call.to_string().into()))
 }
 
 fn text_fault(LineFault { bytes, message, instead, help }: LineFault) -> TextFault {

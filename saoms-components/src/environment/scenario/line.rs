@@ -1,5 +1,6 @@
 use std::time::Duration;
 
+use saoms_api::event::fault::{FAULTS, FaultCall};
 use saoms_api::host::{meant_duration, parse_duration};
 use saoms_api::rule::nearest;
 
@@ -64,8 +65,8 @@ pub(in crate::environment) fn read_outside(
     if STARTS.contains(&first) {
         return read_line(line, line, before, vocabulary).map(|line| (line, false));
     }
-    if vocabulary.names().all(|name| name != first) {
-        let near = nearest(first, vocabulary.names().chain(STARTS));
+    if !FaultCall::is_one(first) && vocabulary.names().all(|name| name != first) {
+        let near = nearest(first, vocabulary.names().chain(STARTS).chain(FAULTS));
         let expected = "an event, `at`, `from` or `then` at the start of a line";
         return Err(words.wrong(first, expected).instead(near));
     }
@@ -112,7 +113,7 @@ pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Voca
             _ => nearest(start, STARTS).map(str::to_owned),
         };
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
-        if vocabulary.names().any(|name| name == start) {
+        if FaultCall::is_one(start) || vocabulary.names().any(|name| name == start) {
             return Err(fault.help(format!("write the time first, as in `at 6s {start} ...`")));
         }
         return Err(fault.help("write a line such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));

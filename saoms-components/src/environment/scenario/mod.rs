@@ -85,7 +85,7 @@ pub enum EventSpec {
     Breakdown(Spanned<RandomRange<u32>>),
     /// The robot with this number is taken off the floor, given as for a breakdown.
     Gone(Spanned<RandomRange<u32>>),
-    /// An event that other classes take, as it is written.
+    /// An event that other classes take, or a fault of messages or executions, as it is written.
     Raised(Box<str>),
     /// No event: the run lasts until this time.
     End,

@@ -134,7 +134,7 @@ pub(crate) fn check_all(
     report: &mut Report<'_>,
 ) {
     saoms_api::host::contain::install_hook();
-    let languages = Languages::of(fleet);
+    let languages = Languages::of(fleet, checks);
     let mut unloadable = BTreeSet::new();
     // A library that cannot be loaded is told once, and has nothing to do with values.
     let mut loads =

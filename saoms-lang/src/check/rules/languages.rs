@@ -4,11 +4,14 @@
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
+use saoms_api::event::fault::FaultSubjects;
 use saoms_api::event::{Events, receiver};
-use saoms_api::extension::{LineFault, PropertyLanguage, PropertyTexts, RaisedEvent};
+use saoms_api::extension::{LineFault, PropertyLanguage, PropertyTexts, RaisedEvent, RaisedFault};
 use saoms_api::host::PropertyValue;
 use saoms_api::{Finding, Place};
 
+use crate::assembly::on_bus;
+use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Member};
 use crate::check::properties::findings::{Subject, diagnostic};
 use crate::check::report::Report;
@@ -18,14 +21,15 @@ use crate::registry::PropertyDeclaration;
 /// The events of a fleet, which most fleets never ask for.
 pub(super) struct Languages<'f, 'a> {
     fleet: &'f Fleet<'a>,
+    checks: &'f [ComponentCheck<'a>],
     events: OnceCell<Events>,
     /// By site and event: the paths of the components that take it.
     takers: OnceCell<HashMap<(String, String), Vec<String>>>,
 }
 
 impl<'f, 'a> Languages<'f, 'a> {
-    pub(super) fn of(fleet: &'f Fleet<'a>) -> Self {
-        Languages { fleet, events: OnceCell::new(), takers: OnceCell::new() }
+    pub(super) fn of(fleet: &'f Fleet<'a>, checks: &'f [ComponentCheck<'a>]) -> Self {
+        Languages { fleet, checks, events: OnceCell::new(), takers: OnceCell::new() }
     }
 
     /// The events of all known classes; where two have one of the same name, that of the fleet's class.
@@ -93,11 +97,45 @@ impl<'f, 'a> Languages<'f, 'a> {
             };
             let judged = (language.check)(&texts);
             all.extend(judged.findings);
+            if !judged.faults.is_empty() {
+                let subjects = self.fault_subjects(&member.site);
+                let wrong =
+                    |RaisedFault { text, call }| Some(finding(subjects.check(&call).err()?, &property.name, text));
+                all.extend(judged.faults.into_iter().filter_map(wrong));
+            }
             for raised in judged.raised {
                 all.extend(self.reaches(member, subject, &property.name, raised, report));
             }
         }
         all
+    }
+
+    /// What the faults of a scenario can name: components of its site, or all outside of sites.
+    fn fault_subjects(&self, site: &str) -> FaultSubjects {
+        let mut subjects = FaultSubjects { is_complete: true, ..FaultSubjects::default() };
+        let members = self.fleet.members.iter().zip(self.checks).enumerate();
+        for (place, (member, check)) in members.filter(|(_, (member, _))| member.runs()) {
+            if !(site.is_empty() || member.site == *site) {
+                continue;
+            }
+            let Some(class) = self.fleet.class_of(place) else {
+                subjects.is_complete = false;
+                continue;
+            };
+            let path = member.path().to_owned();
+            let on_bus = |declared: &str| {
+                let renamed = check.renamed.iter().find(|one| *one.old == *declared);
+                on_bus(&member.site, renamed.map_or(declared, |one| &one.new)).into_owned()
+            };
+            for declared in &class.publishes {
+                subjects.topic(on_bus(&declared.name)).writers.push(path.clone());
+            }
+            for declared in &class.subscribes {
+                subjects.topic(on_bus(&declared.name)).readers.push(path.clone());
+            }
+            subjects.components.push((path, class.class.declaration().is_periodic()));
+        }
+        subjects
     }
 
     /// Tells of an event that nobody in the site takes; a wrong component behind `to` is a finding.

@@ -12,7 +12,8 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use saoms_api::event::{EventCall, ORDERS};
+use saoms_api::event::fault::FaultCall;
+use saoms_api::event::{EventCall, Events as EventNames, ORDERS};
 use saoms_api::extension::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 use saoms_api::host::is_invisible;
 use saoms_api::rule::nearest;
@@ -195,21 +196,30 @@ impl Languages {
         let (site, event) = site_of(line);
         let before = line.len() - event.len();
         let takers = handle.takers();
+        let read = self.read(event, now, takers.events());
+        let (topic, messages) = read.map_err(|fault| shown(line, &or_order(line, fault.moved(before))))?;
+        let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
+        for message in messages {
+            happen(message, (site, topic), handle)?;
+        }
+        Ok(count)
+    }
+
+    /// The events of a line without a site, and the topic of its language.
+    pub(super) fn read(
+        &mut self,
+        event: &str,
+        now: Time,
+        known: &EventNames,
+    ) -> Result<(&'static str, Vec<TimedMessage>), LineFault> {
         let mut problem = None;
         for (topic, reader) in &mut self.readers {
-            match reader.read(event, now, takers.events()) {
-                Ok(messages) => {
-                    let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
-                    for message in messages {
-                        happen(message, (site, topic), handle)?;
-                    }
-                    return Ok(count);
-                }
+            match reader.read(event, now, known) {
+                Ok(messages) => return Ok((*topic, messages)),
                 Err(fault) => problem = problem.or(Some(fault)),
             }
         }
-        let none = || "no class of this program takes events".to_owned();
-        Err(problem.map_or_else(none, |one| shown(line, &or_order(line, one.moved(before)))))
+        Err(problem.unwrap_or_else(|| LineFault::new(0..event.len(), "no class of this program takes events")))
     }
 }
 
@@ -234,7 +244,7 @@ fn or_order(line: &str, fault: LineFault) -> LineFault {
 }
 
 /// The site before an event, and the rest of the line.
-fn site_of(line: &str) -> (&str, &str) {
+pub(super) fn site_of(line: &str) -> (&str, &str) {
     // A colon may be part of a value, too.
     match line.split_once(':') {
         Some((site, event)) if !site.contains(['=', '"']) => (site.trim(), event),
@@ -243,7 +253,7 @@ fn site_of(line: &str) -> (&str, &str) {
 }
 
 /// Lets one event happen.
-fn happen(message: TimedMessage, (site, language): (&str, &str), handle: &Handle) -> Result<(), String> {
+pub(super) fn happen(message: TimedMessage, (site, language): (&str, &str), handle: &Handle) -> Result<(), String> {
     let TimedMessage { at, content, text } = message;
     let line = if site.is_empty() { text.clone() } else { format!("{site}: {text}") };
     match content {
@@ -252,14 +262,23 @@ fn happen(message: TimedMessage, (site, language): (&str, &str), handle: &Handle
             let injection = Injection { topic, content: InjectedContent::Bytes(bytes), at, text: line };
             handle.inject(injection).map_err(|error| refused(site, language, &error))
         }
+        EventContent::Raised if FaultCall::is_one(&text) => {
+            let call = FaultCall::read(&text).map_err(RaiseError::Wrong);
+            let begun = call.and_then(|call| handle.disturb(site, &call, at, line));
+            begun.map_err(|error| raise_error(&text, error))
+        }
         EventContent::Raised => {
             let raised = EventCall::read(&text).map_err(RaiseError::Wrong);
             let raised = raised.and_then(|call| handle.raise(site, &call, at, line));
-            raised.map_err(|error| match error {
-                RaiseError::Wrong(fault) => shown(&text, &fault),
-                RaiseError::Ending => error.to_string(),
-            })
+            raised.map_err(|error| raise_error(&text, error))
         }
+    }
+}
+
+fn raise_error(text: &str, error: RaiseError) -> String {
+    match error {
+        RaiseError::Wrong(fault) => shown(text, &fault),
+        RaiseError::Ending => error.to_string(),
     }
 }
 
@@ -296,7 +315,7 @@ fn refused(site: &str, topic: &str, error: &InjectError) -> String {
 }
 
 /// A fault with an excerpt of its line.
-fn shown(line: &str, fault: &LineFault) -> String {
+pub(super) fn shown(line: &str, fault: &LineFault) -> String {
     // What comes from outside must not steer the terminal, and stands above its mark.
     let plain = |text: &str| text.replace(is_invisible, " ");
     let (start, end) = (fault.bytes.start.min(line.len()), fault.bytes.end.min(line.len()));

@@ -1,0 +1,160 @@
+//! Faults from a file (`--faults`): lines of a scenario, which are read and judged before anything starts.
+
+use std::fs;
+use std::path::Path;
+
+use saoms_api::Time;
+use saoms_api::event::EventCall;
+use saoms_api::event::fault::{FaultCall, FaultSubjects};
+use saoms_api::extension::{EventContent, LineFault, TimedMessage};
+use saoms_core::schedule::{Handle, Takers};
+use saoms_lang::assembly::{Assembly, fault_subjects};
+use saoms_lang::load::missing_file_help;
+
+use super::events::{Languages, Numbers, happen, shown, site_of};
+use crate::output::{counted, displayed, eprint};
+
+/// The greatest size of such a file, in bytes.
+const LARGEST: u64 = 1 << 20;
+
+/// A file of faults that was read.
+#[derive(Clone, Debug)]
+pub(in crate::command) struct FaultScript {
+    path: String,
+    text: String,
+}
+
+/// A fault of a script, or another event of it, with its random values drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::command) struct PlannedEvent {
+    message: TimedMessage,
+    site: String,
+    topic: &'static str,
+}
+
+/// What the lines of a script can name.
+#[derive(Debug)]
+pub(in crate::command) struct Known {
+    takers: Takers,
+    /// By the site; empty for all.
+    assembly: Assembly,
+}
+
+impl Known {
+    pub(in crate::command) fn of(assembly: &Assembly) -> Known {
+        Known { takers: Takers::of_assembly(assembly), assembly: assembly.clone() }
+    }
+
+    fn subjects(&self, site: &str) -> FaultSubjects {
+        fault_subjects(self.assembly.components.iter().filter(|spec| site.is_empty() || spec.site == *site))
+    }
+
+    /// Judges what one event names.
+    fn judge(&self, event: &PlannedEvent) -> Result<(), LineFault> {
+        let text = &event.message.text;
+        match event.message.content {
+            EventContent::Bytes(_) => Ok(()),
+            EventContent::Raised if FaultCall::is_one(text) => {
+                self.subjects(&event.site).check(&FaultCall::read(text)?)
+            }
+            EventContent::Raised => self.takers.messages(&event.site, &EventCall::read(text)?).map(drop),
+        }
+    }
+}
+
+impl FaultScript {
+    /// Reads a file. What is wrong with it as a whole is reported.
+    pub(in crate::command) fn read(path: &Path) -> Option<FaultScript> {
+        let refuse = |why: String, help: Option<String>| {
+            let help = help.map(|help| format!("  = help: {help}\n")).unwrap_or_default();
+            let path = displayed(path);
+            eprint(&format!(
+                "error: the faults cannot be read from `{path}`: {why}\n{help}\n1 error: nothing was started\n"
+            ));
+            None
+        };
+        let size = match fs::metadata(path) {
+            Ok(about) if about.is_file() => about.len(),
+            Ok(_) => return refuse("it is no file".to_owned(), None),
+            Err(error) => return refuse(error.to_string(), missing_file_help(path)),
+        };
+        if size > LARGEST {
+            return refuse(format!("it has {size} bytes, at most {LARGEST} are read"), None);
+        }
+        match fs::read_to_string(path) {
+            Ok(text) => Some(FaultScript { path: displayed(path).to_string(), text }),
+            Err(error) => refuse(error.to_string(), None),
+        }
+    }
+
+    /// The events of a run with this seed.
+    ///
+    /// # Errors
+    /// What is wrong with each line, for people.
+    pub(in crate::command) fn events(&self, known: &Known, seed: u64) -> Result<Vec<PlannedEvent>, Vec<String>> {
+        let mut languages = Languages::of("(faults)", &Numbers::new(seed));
+        let (mut all, mut wrong) = (Vec::new(), Vec::new());
+        for (number, line) in (1..).zip(self.text.lines()) {
+            let (site, text) = site_of(line);
+            let before = line.len() - text.len();
+            let read = languages.read(text, Time::START, known.takers.events());
+            let planned = read.map_err(|fault| fault.moved(before)).and_then(|(topic, messages)| {
+                let planned = messages.into_iter().map(|message| PlannedEvent {
+                    message: TimedMessage { at: Some(message.at.unwrap_or(Time::START)), ..message },
+                    site: site.to_owned(),
+                    topic,
+                });
+                let planned: Vec<PlannedEvent> = planned.collect();
+                // The others differ in their random values alone.
+                let judged = planned.first().map_or(Ok(()), |first| known.judge(first));
+                judged.map_err(|fault| placed(line, &planned, fault))?;
+                Ok(planned)
+            });
+            match planned {
+                Ok(planned) => all.extend(planned),
+                Err(fault) => {
+                    let column = line.get(..fault.bytes.start).map_or(1, |before| before.chars().count() + 1);
+                    wrong.push(format!("error: {}:{number}:{column}: {}\n", self.path, shown(line, &fault)));
+                }
+            }
+        }
+        if wrong.is_empty() { Ok(all) } else { Err(wrong) }
+    }
+}
+
+/// The fault of an event at its words in the line.
+fn placed(line: &str, planned: &[PlannedEvent], fault: LineFault) -> LineFault {
+    let Some(first) = planned.first() else { return fault };
+    let word = first.message.text.get(fault.bytes.clone()).unwrap_or_default();
+    // Behind the word of the event, so that a name is not found in a time.
+    let event = first.message.text.split_whitespace().find(|word| !word.is_empty()).unwrap_or_default();
+    let start = line.find(event).unwrap_or_default();
+    let is_end =
+        |sign: Option<char>| sign.is_none_or(|sign| sign.is_whitespace() || matches!(sign, ',' | '=' | ';' | '#'));
+    let place = line[start..]
+        .match_indices(word)
+        .map(|(at, _)| start + at)
+        .find(|at| is_end(line[..*at].chars().next_back()) && is_end(line[*at + word.len()..].chars().next()));
+    match place.filter(|_| !word.is_empty()) {
+        Some(place) => fault.at(place..place + word.len()),
+        None => fault.at(start..line.trim_end().len()),
+    }
+}
+
+/// Reports what is wrong with a script.
+pub(in crate::command) fn report_wrong(wrong: &[String]) {
+    for one in wrong {
+        eprint(one);
+    }
+    eprint(&format!("\n{}: nothing was started\n", counted(wrong.len(), "error")));
+}
+
+impl PlannedEvent {
+    /// Puts it into a fleet that has just started.
+    ///
+    /// # Errors
+    /// Why it does not happen.
+    pub(in crate::command) fn play(self, handle: &Handle) -> Result<(), String> {
+        happen(self.message, (&self.site, self.topic), handle)
+    }
+}
