@@ -11,6 +11,7 @@ pub mod environment;
 mod gone;
 pub mod grid;
 pub mod hardware;
+mod invariants;
 pub mod manual;
 pub mod master;
 pub mod messages;

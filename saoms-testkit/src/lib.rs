@@ -53,6 +53,8 @@ mod faults;
 mod fleet;
 mod golden;
 mod installed;
+#[cfg(feature = "fleets")]
+mod invariants;
 mod loop_bench;
 #[cfg(feature = "fleets")]
 mod moment;

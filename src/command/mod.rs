@@ -14,6 +14,7 @@ mod new;
 mod report;
 mod run;
 mod schema;
+mod simulate;
 mod tips;
 mod why;
 
@@ -45,6 +46,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(Box<run::RunArguments>),
+    Simulate(Box<simulate::SimulateArguments>),
     Check(check::CheckArguments),
     Explain(explain::ExplainArguments),
     Expand(expand::ExpandArguments),
@@ -82,6 +84,7 @@ enum Command {
 pub(crate) fn execute() -> Exit {
     match parsed().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Explain(arguments) => explain::explain(&arguments),
         Command::Expand(arguments) => expand::expand(&arguments),

@@ -133,7 +133,8 @@ fn meant_option(option: &str) -> Option<&'static str> {
 fn other_name(word: &str) -> Option<&'static str> {
     match word {
         "validate" | "lint" | "verify" | "compile" | "build" => Some("check"),
-        "simulate" | "sim" | "launch" | "exec" | "up" | "play" => Some("run"),
+        "sim" | "chaos" | "fuzz" => Some("simulate"),
+        "launch" | "exec" | "up" | "play" => Some("run"),
         "format" => Some("fmt"),
         "init" | "create" | "generate" => Some("new"),
         "list" | "ls" => Some("ps"),

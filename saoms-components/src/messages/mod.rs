@@ -6,7 +6,16 @@ mod movement;
 mod team;
 mod visit;
 
+use saoms_api::host::TopicDeclaration;
+use saoms_api::{Message, Topic};
+
 pub use environment::*;
 pub use movement::*;
 pub use team::*;
 pub use visit::*;
+
+/// True if a topic is declared to carry the messages of this one, whatever its name.
+pub(crate) fn carries<M: Message>(declared: &TopicDeclaration<'_>, topic: &Topic<M>) -> bool {
+    let topic = topic.declaration();
+    (declared.kind, declared.message, declared.schema) == (topic.kind, topic.message, topic.schema)
+}

@@ -6,9 +6,8 @@ use crate::grid::{Block, Map};
 use crate::hardware::Area;
 use crate::messages::{
     AREA, COLLISION, Collision, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, LuggageStage, POSITION, Position,
-    ROBOT_LIST, RobotList,
+    ROBOT_LIST, RobotList, carries,
 };
-use saoms_api::Topic;
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 /// The limit of legs that can be distinguished: beyond this number, only how often each block was entered is kept.
@@ -65,11 +64,6 @@ impl Content {
             _ => return None,
         })
     }
-}
-
-fn carries<M: saoms_api::Message>(declared: &TopicDeclaration<'_>, topic: &Topic<M>) -> bool {
-    let topic = topic.declaration();
-    (declared.kind, declared.message, declared.schema) == (topic.kind, topic.message, topic.schema)
 }
 
 impl Recording {

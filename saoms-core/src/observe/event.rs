@@ -2,6 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::event::fault::FaultCall;
 use saoms_api::host::SharedMessage;
 use saoms_api::{Level, Time};
 
@@ -115,6 +116,8 @@ pub enum Occurrence {
     Abandoned,
     /// Nothing has happened for a long time, although work is left.
     Standstill(Standstill),
+    /// A fault begins that was put into the run.
+    Fault(FaultCall),
     /// A remark about the whole fleet.
     Note {
         /// Severity.
@@ -129,7 +132,9 @@ impl Occurrence {
     pub fn level(&self) -> Level {
         match self {
             Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
-            Occurrence::Console { .. } | Occurrence::Replaced { .. } | Occurrence::Returned => Level::Info,
+            Occurrence::Fault(_) | Occurrence::Console { .. } | Occurrence::Replaced { .. } | Occurrence::Returned => {
+                Level::Info
+            }
             Occurrence::Started | Occurrence::Left | Occurrence::Alert { text: None, .. } => Level::Debug,
             Occurrence::Failed { restart: None, .. }
             | Occurrence::Alert { text: Some(_), .. }
@@ -198,6 +203,7 @@ impl fmt::Display for Occurrence {
                 let library = library.as_deref().map(|library| format!(" (library `{library}`)")).unwrap_or_default();
                 write!(formatter, "has not returned for {time}{then}{library}")
             }
+            Occurrence::Fault(call) => write!(formatter, "the fault `{call}` begins"),
             Occurrence::Returned => formatter.write_str("has returned"),
             Occurrence::NotStopped { message } => write!(formatter, "its hardware may still move: {message}"),
             Occurrence::Standstill(standstill) => standstill.fmt(formatter),

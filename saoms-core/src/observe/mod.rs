@@ -6,6 +6,7 @@
 //! records, by a second queue and thread.
 
 mod event;
+mod invariants;
 mod journal_file;
 mod observer;
 mod queue;
@@ -15,6 +16,7 @@ mod rotation;
 mod tests;
 
 pub use event::{Occurrence, RunEvent, RunProgress, SentMessage};
+pub use invariants::InvariantWatch;
 pub use journal_file::JournalFile;
 pub(crate) use observer::Observers;
 pub use observer::{Beginning, Interest, Observer, Records};

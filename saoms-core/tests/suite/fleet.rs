@@ -129,10 +129,12 @@ impl Observer for Diary {
 }
 
 impl Diary {
-    /// The events as lines, without the starts and ends that every component has.
+    /// The events as lines, without the starts and ends that every component has, and the faults of the test.
     pub(crate) fn lines(&self) -> String {
         let events = self.events.lock().unwrap();
-        let told = events.iter().filter(|event| !matches!(event.what, Occurrence::Started | Occurrence::Left));
+        let told = events
+            .iter()
+            .filter(|event| !matches!(event.what, Occurrence::Started | Occurrence::Left | Occurrence::Fault(_)));
         told.fold(String::new(), |mut text, event| {
             writeln!(text, "{event}").unwrap();
             text

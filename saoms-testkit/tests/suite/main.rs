@@ -7,6 +7,7 @@ mod comply;
 mod events;
 mod faults;
 mod loops;
+mod planted;
 mod records;
 mod run;
 mod start;

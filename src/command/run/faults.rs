@@ -7,6 +7,7 @@ use saoms_api::Time;
 use saoms_api::event::EventCall;
 use saoms_api::event::fault::{FaultCall, FaultSubjects};
 use saoms_api::extension::{EventContent, LineFault, TimedMessage};
+use saoms_api::host::format_duration;
 use saoms_core::schedule::{Handle, Takers};
 use saoms_lang::assembly::{Assembly, fault_subjects};
 use saoms_lang::load::missing_file_help;
@@ -156,5 +157,12 @@ impl PlannedEvent {
     /// Why it does not happen.
     pub(in crate::command) fn play(self, handle: &Handle) -> Result<(), String> {
         happen(self.message, (&self.site, self.topic), handle)
+    }
+
+    /// The line that says it, with its time.
+    pub(in crate::command) fn line(&self) -> String {
+        let at = self.message.at.unwrap_or(Time::START).since(Time::START);
+        let site = if self.site.is_empty() { String::new() } else { format!("{}: ", self.site) };
+        format!("{site}at {} {}", format_duration(at), self.message.text)
     }
 }

@@ -26,7 +26,7 @@ use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_control::AlertList;
-use saoms_core::observe::Observer;
+use saoms_core::observe::{InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings, Speed};
 use saoms_lang::assembly::Assembly;
@@ -112,6 +112,11 @@ pub(crate) struct RunArguments {
     /// wrong line is an error before anything starts
     #[arg(long, value_name = "FILE")]
     pub(crate) faults: Option<PathBuf>,
+
+    /// Hold the run to the invariants of its components, as `saoms simulate` does: violations are reported, and the
+    /// exit code is 1 then
+    #[arg(long)]
+    pub(crate) invariants: bool,
 
     /// Keep running when all work is done, for events that are sent later: until `saoms down`, a signal, or the time of
     /// `--for`
@@ -264,6 +269,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     observers.push(Arc::clone(&alerts) as Arc<dyn Observer>);
+    let watch = arguments.invariants.then(|| Arc::new(InvariantWatch::default()));
+    observers.extend(watch.clone().map(|watch| watch as Arc<dyn Observer>));
     let mut notes = Vec::new();
     let control = match Control::of(arguments, &mut notes) {
         Ok(control) => control,
@@ -317,6 +324,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let outcome = fleet.run_to_end().outcome;
     delivery.finish();
     drop((hold, reload, server, notifier));
+    let violations = watch.iter().flat_map(|watch| watch.violations()).inspect(|one| {
+        eprint(&format!("error: [{}] {}: {}\n", one.at, one.invariant, one.text));
+    });
+    if violations.count() > 0 {
+        return Exit::Failed;
+    }
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())
         || lost_lines.load(Ordering::Relaxed) > 0

@@ -16,6 +16,7 @@ mod paths;
 mod report;
 mod schema;
 mod service;
+mod simulate;
 mod trust;
 mod usage;
 mod why;

@@ -9,6 +9,7 @@ use super::Engine;
 use super::slot::Slot;
 use crate::bus::{Link, TopicId};
 use crate::fault::{Arrival, End, FaultPlay, OnLink};
+use crate::observe::Occurrence;
 use crate::schedule::inject::OUTSIDE;
 
 fn end(number: u32, slot: &Slot) -> End<'_> {
@@ -19,6 +20,7 @@ impl Engine {
     /// Begins a fault.
     #[cold]
     pub(crate) fn begin_fault(&mut self, call: &FaultCall, site: &str, now: u64) {
+        self.note(now, Occurrence::Fault(call.clone()));
         if call.kind.is_of_messages() {
             self.faults.begin_messages(call, site, now);
             let topics: Vec<TopicId> = self.bus.topics().collect();

@@ -1,0 +1,69 @@
+use crate::Time;
+use crate::event::fault::FaultCall;
+use crate::host::{SharedMessage, TopicDeclaration};
+
+use super::Counts;
+
+/// What has to hold in each run of a fleet, whatever is done to it: judged by the messages that components send.
+///
+/// Messages are those that were sent, before any fault acts on their ways; they come in the order in which they were
+/// sent.
+pub trait RunInvariants: Send {
+    /// True if the messages of a topic are judged, which its publishers declare so and call `name` after renaming.
+    /// Asked before the first message of the topic.
+    fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool;
+
+    /// Takes in a message that a component sent on such a topic; `component` is the path of the component.
+    fn message(&mut self, topic: &str, component: &str, message: &SharedMessage);
+
+    /// Takes in a fault that begins.
+    fn fault(&mut self, at: Time, call: &FaultCall);
+
+    /// Takes in the end of the run. `is_cut_off` is true if something from outside ended it, such as a time limit.
+    fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>);
+
+    /// The violations since the last call.
+    fn violations(&mut self) -> Vec<Violation>;
+
+    /// What the run came to, after its end.
+    fn measures(&self) -> Vec<Measure>;
+}
+
+/// A violation of an invariant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// The invariant, as its number and a few words: `1 no two robots in a block`.
+    pub invariant: &'static str,
+    /// When it was seen, in the time of the run.
+    pub at: Time,
+    /// What was found.
+    pub text: String,
+}
+
+/// A figure of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Its name, with its unit.
+    pub name: &'static str,
+    /// The figure.
+    pub value: f64,
+    /// The greatest that it could be, where that is known; such figures are added up over runs, and others are
+    /// averaged.
+    pub of: Option<f64>,
+}
+
+/// The registration of invariants. Real fleets, tests and `saoms simulate` are held to all that are linked in.
+#[derive(Clone, Copy, Debug)]
+pub struct InvariantsRegistration {
+    /// Makes the state of one run.
+    pub new: fn() -> Box<dyn RunInvariants>,
+}
+
+inventory::collect!(InvariantsRegistration);
+
+impl InvariantsRegistration {
+    /// The invariants that are linked into this program, for one run.
+    pub fn linked() -> Vec<Box<dyn RunInvariants>> {
+        inventory::iter::<InvariantsRegistration>().map(|one| (one.new)()).collect()
+    }
+}

@@ -1,0 +1,116 @@
+//! Luggage: invariants 4, 7 and 8.
+
+use std::collections::BTreeMap;
+
+use saoms_api::Time;
+use saoms_api::host::SharedMessage;
+
+use super::tide::Tide;
+use super::{FINISHED, Finder, ONCE, TAKEN_OVER, bound};
+use crate::messages::{CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage};
+
+/// The pieces of luggage of a site.
+#[derive(Debug, Default)]
+pub(super) struct Pieces {
+    all: BTreeMap<u32, Piece>,
+    /// Pieces on robots that are broken, with the robot, until somebody takes them over.
+    stranded: BTreeMap<u32, (u32, Time)>,
+}
+
+#[derive(Debug)]
+struct Piece {
+    requested: Time,
+    delivered: Option<Time>,
+    is_given_up: bool,
+}
+
+impl Pieces {
+    pub(super) fn requested(&self) -> usize {
+        self.all.len()
+    }
+
+    pub(super) fn delivered(&self) -> usize {
+        self.all.values().filter(|piece| piece.delivered.is_some()).count()
+    }
+
+    /// How long each delivered piece waited, in seconds.
+    pub(super) fn waits(&self) -> impl Iterator<Item = f64> {
+        self.all.values().filter_map(|piece| Some(piece.delivered?.since(piece.requested).as_secs_f64()))
+    }
+
+    pub(super) fn hear(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {
+        let Some(EventLuggage { robot, luggage, stage, .. }) = message.get::<EventLuggage>().cloned() else { return };
+        match stage {
+            LuggageStage::Request => {
+                let new = Piece { requested: finder.at, delivered: None, is_given_up: false };
+                self.all.entry(luggage).or_insert(new);
+            }
+            LuggageStage::Taken => _ = self.stranded.remove(&luggage),
+            LuggageStage::Delivered => {
+                self.stranded.remove(&luggage);
+                match self.all.get_mut(&luggage) {
+                    None => {
+                        finder.note(ONCE, format!("robot {robot} delivers luggage {luggage}, which nobody asked for"))
+                    }
+                    Some(Piece { delivered: Some(before), .. }) => {
+                        let text = format!("robot {robot} delivers luggage {luggage}, which was delivered at {before}");
+                        finder.note(ONCE, text);
+                    }
+                    Some(piece) => piece.delivered = Some(finder.at),
+                }
+            }
+            LuggageStage::GivenUp => {
+                self.stranded.remove(&luggage);
+                if let Some(piece) = self.all.get_mut(&luggage) {
+                    piece.is_given_up = true;
+                }
+            }
+            LuggageStage::Interest | LuggageStage::Release | LuggageStage::Refused => {}
+        }
+    }
+
+    pub(super) fn hear_critical(&mut self, message: &SharedMessage, at: Time) {
+        let Some(said) = message.get::<CriticalSituation>() else { return };
+        match said.stage {
+            CriticalStage::Request if said.kind == CriticalKind::CarriesLuggage && said.luggage > 0 => {
+                self.stranded.entry(said.luggage).or_insert((said.critical, at));
+            }
+            CriticalStage::Taken => _ = self.stranded.remove(&said.luggage),
+            _ => {}
+        }
+    }
+
+    /// Looks for pieces that nobody takes over.
+    pub(super) fn look(&mut self, tide: &Tide, period: u64, finder: &mut Finder<'_>) {
+        let at = finder.at;
+        let is_late = |since: Time| tide.calm(since, at).is_some_and(|time| time > bound(period));
+        let late: Vec<(u32, u32)> = self
+            .stranded
+            .iter()
+            .filter(|(_, (_, since))| is_late(*since))
+            .map(|(luggage, (robot, _))| (*luggage, *robot))
+            .collect();
+        for (luggage, robot) in late {
+            self.stranded.remove(&luggage);
+            finder.note(TAKEN_OVER, format!("nobody takes over luggage {luggage} of robot {robot}, which is broken"));
+        }
+    }
+
+    /// Judges what is not finished at the end: of a run that was cut off, what was asked for long before.
+    pub(super) fn end(&mut self, is_cut_off: bool, tide: &Tide, period: u64, finder: &mut Finder<'_>) {
+        if tide.spoils_requests() {
+            return;
+        }
+        let at = finder.at;
+        let is_open = |piece: &Piece| {
+            let time = tide.calm(piece.requested, at);
+            piece.delivered.is_none()
+                && !piece.is_given_up
+                && (!is_cut_off || time.is_some_and(|time| time > bound(period).saturating_mul(10)))
+        };
+        let open: Vec<u32> = self.all.iter().filter(|(_, piece)| is_open(piece)).map(|(luggage, _)| *luggage).collect();
+        for luggage in open {
+            finder.note(FINISHED, format!("luggage {luggage} is not delivered, and nobody gave it up"));
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! The invariants of a fleet of robots: what holds in each run, whatever becomes of messages and components.
+//!
+//! 1. No two robots are in a block. 2. No two robots exchange their blocks. 3. A move is one block, to a free
+//!    neighbour. 4. A piece of luggage is delivered exactly once. 5. No battery is empty away from a charger. 6. No
+//!    robot with a job stands still for ever. 7. Once faults are over, each request is finished. 8. The luggage of a
+//!    broken robot is taken over. 9, that the same seed has the same trace, is judged by whoever runs a seed twice.
+
+mod luggage;
+mod robots;
+mod tide;
+
+use std::collections::{BTreeMap, HashMap};
+use std::time::Duration;
+
+use saoms_api::Time;
+use saoms_api::event::fault::FaultCall;
+use saoms_api::extension::{Counts, InvariantsRegistration, Measure, RunInvariants, Violation, submit};
+use saoms_api::host::{SharedMessage, TopicDeclaration};
+
+use crate::messages::{
+    AREA, COLLISION, CRITICAL_SITUATION, EVENT_LUGGAGE, FAULT, POSITION, REMOVAL, ROBOT_LIST, carries,
+};
+use luggage::Pieces;
+use robots::Robots;
+use tide::Tide;
+
+submit! { InvariantsRegistration { new: || Box::new(FleetInvariants::default()) } }
+
+pub(crate) const ONE_IN_A_BLOCK: &str = "1 no two robots in a block";
+pub(crate) const NO_SWAP: &str = "2 no two robots exchange their blocks";
+pub(crate) const MOVES: &str = "3 a move is one block to a free neighbour";
+pub(crate) const ONCE: &str = "4 luggage is delivered exactly once";
+pub(crate) const BATTERY: &str = "5 no battery is empty away from a charger";
+pub(crate) const NO_DEADLOCK: &str = "6 no robot with a job stands still for ever";
+pub(crate) const FINISHED: &str = "7 requests are finished once faults are over";
+pub(crate) const TAKEN_OVER: &str = "8 the luggage of a broken robot is taken over";
+
+/// The least time after which something that does not happen counts as never happening. Slow robots have 200 of their
+/// periods.
+const BOUND: Duration = Duration::from_secs(60);
+const PERIODS: u32 = 200;
+/// Time between two looks at what does not happen.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// The content of a topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Content {
+    Area,
+    Position,
+    Robot,
+    Luggage,
+    Collision,
+    Fault,
+    Removal,
+    Critical,
+}
+
+/// The invariants of one run. Each site has robots and luggage of its own.
+#[derive(Default)]
+struct FleetInvariants {
+    topics: HashMap<String, (String, Content)>,
+    sites: BTreeMap<String, Site>,
+    tide: Tide,
+    looked: Time,
+    found: Vec<Violation>,
+    measures: Vec<Measure>,
+}
+
+#[derive(Default)]
+struct Site {
+    robots: Robots,
+    pieces: Pieces,
+}
+
+/// Where violations are noted.
+pub(crate) struct Finder<'f> {
+    pub(crate) site: &'f str,
+    pub(crate) at: Time,
+    pub(crate) found: &'f mut Vec<Violation>,
+}
+
+impl Finder<'_> {
+    pub(crate) fn note(&mut self, invariant: &'static str, text: String) {
+        let text = if self.site.is_empty() { text } else { format!("{}: {text}", self.site) };
+        self.found.push(Violation { invariant, at: self.at, text });
+    }
+}
+
+fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
+    Some(match declared {
+        one if carries(one, &AREA) => Content::Area,
+        one if carries(one, &POSITION) => Content::Position,
+        one if carries(one, &ROBOT_LIST) => Content::Robot,
+        one if carries(one, &EVENT_LUGGAGE) => Content::Luggage,
+        one if carries(one, &COLLISION) => Content::Collision,
+        one if carries(one, &FAULT) => Content::Fault,
+        one if carries(one, &REMOVAL) => Content::Removal,
+        one if carries(one, &CRITICAL_SITUATION) => Content::Critical,
+        _ => return None,
+    })
+}
+
+/// The time after which something does not happen any more, for robots with this period in microseconds.
+pub(crate) fn bound(period: u64) -> Duration {
+    BOUND.max(Duration::from_micros(period).saturating_mul(PERIODS))
+}
+
+impl FleetInvariants {
+    /// Looks for what does not happen.
+    fn look(&mut self, at: Time) {
+        self.looked = at;
+        for (site, Site { robots, pieces }) in &mut self.sites {
+            let mut finder = Finder { site, at, found: &mut self.found };
+            robots.look(&self.tide, &mut finder);
+            pieces.look(&self.tide, robots.longest_period(), &mut finder);
+        }
+    }
+}
+
+impl RunInvariants for FleetInvariants {
+    fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        let Some(content) = content(declared) else { return false };
+        let site = name.rsplit_once('/').map_or("", |(site, _)| site);
+        self.topics.insert(name.to_owned(), (site.to_owned(), content));
+        true
+    }
+
+    fn message(&mut self, topic: &str, _component: &str, message: &SharedMessage) {
+        let Some((site, content)) = self.topics.get(topic) else { return };
+        let at = message.header().sent;
+        let state = self.sites.entry(site.clone()).or_default();
+        let mut finder = Finder { site, at, found: &mut self.found };
+        let Site { robots, pieces } = state;
+        match content {
+            Content::Area => robots.hear_area(message),
+            Content::Position => robots.hear_position(message, &mut finder),
+            Content::Robot => robots.hear_state(message, &self.tide, &mut finder),
+            Content::Collision => robots::hear_collision(message, &mut finder),
+            Content::Luggage => {
+                robots.hear_luggage(message, at);
+                pieces.hear(message, &mut finder);
+            }
+            Content::Fault => {
+                self.tide.rise(at);
+                robots.hear_fault(message);
+            }
+            Content::Removal => robots.hear_removal(message),
+            Content::Critical => {
+                robots.hear_critical(message);
+                pieces.hear_critical(message, at);
+            }
+        }
+        if at.since(self.looked) >= LOOK {
+            self.look(at);
+        }
+    }
+
+    fn fault(&mut self, at: Time, call: &FaultCall) {
+        self.tide.begin(at, call);
+    }
+
+    fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>) {
+        self.look(at);
+        let (mut delivered, mut requested, mut waits) = (0, 0, Vec::new());
+        for (site, Site { robots, pieces }) in &mut self.sites {
+            let mut finder = Finder { site, at, found: &mut self.found };
+            pieces.end(is_cut_off, &self.tide, robots.longest_period(), &mut finder);
+            delivered += pieces.delivered();
+            requested += pieces.requested();
+            waits.extend(pieces.waits());
+        }
+        let counted = usize::try_from(counts("luggage.delivered")).unwrap_or_default();
+        if delivered > counted {
+            let text =
+                format!("robots said of {delivered} pieces that they were delivered, the world counted {counted}");
+            Finder { site: "", at, found: &mut self.found }.note(ONCE, text);
+        }
+        let seconds = at.since(Time::START).as_secs_f64();
+        let mean = |all: &[f64]| if all.is_empty() { 0.0 } else { all.iter().sum::<f64>() / all.len() as f64 };
+        let figure = |name, value| Measure { name, value, of: None };
+        self.measures = vec![
+            Measure { name: "pieces delivered", value: delivered as f64, of: Some(requested as f64) },
+            figure("pieces in an hour", if seconds > 0.0 { delivered as f64 * 3600.0 / seconds } else { 0.0 }),
+            figure("mean wait of a piece, s", mean(&waits)),
+            figure("longest wait of a piece, s", waits.iter().copied().fold(0.0, f64::max)),
+        ];
+    }
+
+    fn violations(&mut self) -> Vec<Violation> {
+        std::mem::take(&mut self.found)
+    }
+
+    fn measures(&self) -> Vec<Measure> {
+        self.measures.clone()
+    }
+}

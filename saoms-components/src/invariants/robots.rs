@@ -1,0 +1,143 @@
+//! Robots and their ways: invariants 1, 2, 3, 5 and 6.
+
+use std::collections::BTreeMap;
+
+use saoms_api::Time;
+use saoms_api::host::SharedMessage;
+
+use super::tide::Tide;
+use super::{BATTERY, Finder, MOVES, NO_DEADLOCK, NO_SWAP, ONE_IN_A_BLOCK, bound};
+use crate::grid::{Block, Map};
+use crate::hardware::Area;
+use crate::messages::{
+    Collision, CriticalSituation, CriticalStage, EventLuggage, Fault, FaultKind, LuggageStage, Position, Removal,
+    RobotList,
+};
+
+/// The robots of a site.
+#[derive(Debug, Default)]
+pub(super) struct Robots {
+    map: Option<Map>,
+    all: BTreeMap<u32, Robot>,
+}
+
+#[derive(Debug, Default)]
+struct Robot {
+    block: Option<Block>,
+    moved: Time,
+    /// In microseconds.
+    period: u64,
+    job: Option<(u32, Time)>,
+    /// True if it is out of service, so that nothing is expected of it.
+    is_out: bool,
+    is_empty: bool,
+    stands_still: bool,
+}
+
+/// What the world says of collisions.
+pub(super) fn hear_collision(message: &SharedMessage, finder: &mut Finder<'_>) {
+    let Some(collision) = message.get::<Collision>() else { return };
+    finder.note(if collision.swap { NO_SWAP } else { ONE_IN_A_BLOCK }, collision.to_string());
+}
+
+impl Robots {
+    pub(super) fn hear_area(&mut self, message: &SharedMessage) {
+        if let Some(area) = message.get::<Area>() {
+            self.map = area.clone().into();
+        }
+    }
+
+    /// The longest period of a robot, in microseconds.
+    pub(super) fn longest_period(&self) -> u64 {
+        self.all.values().map(|robot| robot.period).max().unwrap_or_default()
+    }
+
+    pub(super) fn hear_position(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {
+        let Some(Position { robot: number, block, next, .. }) = message.get::<Position>().cloned() else { return };
+        let robot = self.all.entry(number).or_default();
+        let before = robot.block.replace(block);
+        if before != Some(block) {
+            (robot.moved, robot.stands_still) = (finder.at, false);
+        }
+        let is_blocked = |block: Block| self.map.as_ref().is_some_and(|map| !map.is_free(block));
+        if let Some(before) = before.filter(|before| before.distance(block) > 1) {
+            finder.note(MOVES, format!("robot {number} was at {before}, and is at {block}"));
+        } else if block.distance(next) > 1 {
+            finder.note(MOVES, format!("robot {number} is at {block}, and moves to {next}"));
+        } else if let Some(wrong) = [block, next].into_iter().find(|block| is_blocked(*block)) {
+            finder.note(MOVES, format!("robot {number} is at {block}, and moves to {next}: {wrong} is not free"));
+        }
+    }
+
+    pub(super) fn hear_state(&mut self, message: &SharedMessage, tide: &Tide, finder: &mut Finder<'_>) {
+        let Some(state) = message.get::<RobotList>() else { return };
+        let robot = self.all.entry(state.robot).or_default();
+        robot.period = state.period;
+        if state.active {
+            robot.is_out = false;
+        }
+        let is_empty = state.active && state.is_out_of_battery();
+        // Under a fault that has lasted for long, it could not go to its charger.
+        if is_empty && !robot.is_empty && tide.calm(Time::START, finder.at).is_some() {
+            finder.note(BATTERY, format!("the battery of robot {} is empty, and it is not at a charger", state.robot));
+        }
+        robot.is_empty = is_empty;
+    }
+
+    pub(super) fn hear_luggage(&mut self, message: &SharedMessage, at: Time) {
+        let Some(EventLuggage { robot, luggage, stage, .. }) = message.get::<EventLuggage>().cloned() else { return };
+        let Some(robot) = self.all.get_mut(&robot) else { return };
+        match stage {
+            LuggageStage::Taken => (robot.job, robot.stands_still) = (Some((luggage, at)), false),
+            LuggageStage::Release | LuggageStage::Delivered | LuggageStage::Refused | LuggageStage::GivenUp
+                if robot.job.is_some_and(|(own, _)| own == luggage) =>
+            {
+                robot.job = None;
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn hear_fault(&mut self, message: &SharedMessage) {
+        if let Some(Fault { robot, kind }) = message.get::<Fault>() {
+            self.put_out(*robot, *kind == FaultKind::Gone);
+        }
+    }
+
+    pub(super) fn hear_removal(&mut self, message: &SharedMessage) {
+        if let Some(removal) = message.get::<Removal>() {
+            self.put_out(removal.robot, true);
+        }
+    }
+
+    pub(super) fn hear_critical(&mut self, message: &SharedMessage) {
+        let Some(said) = message.get::<CriticalSituation>() else { return };
+        if said.stage == CriticalStage::Request && said.healer == 0 {
+            self.put_out(said.critical, false);
+        }
+    }
+
+    fn put_out(&mut self, robot: u32, is_gone: bool) {
+        let Some(robot) = self.all.get_mut(&robot) else { return };
+        (robot.is_out, robot.job) = (true, None);
+        if is_gone {
+            // Where it comes back it is put down.
+            robot.block = None;
+        }
+    }
+
+    /// Looks for robots that stand still although they have a job.
+    pub(super) fn look(&mut self, tide: &Tide, finder: &mut Finder<'_>) {
+        for (number, robot) in &mut self.all {
+            let Some((luggage, since)) = robot.job.filter(|_| !robot.is_out && !robot.stands_still) else { continue };
+            let stood = tide.calm(since.max(robot.moved), finder.at);
+            if let Some(time) = stood.filter(|time| *time > bound(robot.period)) {
+                robot.stands_still = true;
+                let block = robot.block.map(|block| format!(" at {block}")).unwrap_or_default();
+                let time = time.as_secs();
+                finder
+                    .note(NO_DEADLOCK, format!("robot {number} has stood{block} for {time} s with luggage {luggage}"));
+            }
+        }
+    }
+}

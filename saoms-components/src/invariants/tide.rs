@@ -1,0 +1,45 @@
+use std::time::Duration;
+
+use saoms_api::Time;
+use saoms_api::event::fault::{FaultCall, FaultKind};
+
+/// Until when faults act on the fleet: what has to happen in a time has that time from then on.
+#[derive(Debug, Default)]
+pub(super) struct Tide {
+    until: Time,
+    /// True if a fault never ends.
+    is_endless: bool,
+    /// True if events are lost for good: requests need not be finished then.
+    loses_events: bool,
+}
+
+impl Tide {
+    /// Notes a fault of an instant.
+    pub(super) fn rise(&mut self, at: Time) {
+        self.until = self.until.max(at);
+    }
+
+    pub(super) fn begin(&mut self, at: Time, call: &FaultCall) {
+        let lasting = match call.kind {
+            FaultKind::Fail => Some(Duration::ZERO),
+            FaultKind::Crash { restart } => Some(restart.unwrap_or_default()),
+            _ => call.lasting,
+        };
+        self.loses_events |= matches!(call.kind, FaultKind::Violate(_));
+        match lasting {
+            Some(time) => self.rise(at + time),
+            None => self.is_endless = true,
+        }
+    }
+
+    /// The time for which something has not happened since `since`, without faults; `None` under faults.
+    pub(super) fn calm(&self, since: Time, now: Time) -> Option<Duration> {
+        let since = since.max(self.until);
+        (!self.is_endless && now > since).then(|| now.since(since))
+    }
+
+    /// True if requests need not be finished.
+    pub(super) fn spoils_requests(&self) -> bool {
+        self.is_endless || self.loses_events
+    }
+}

@@ -1,0 +1,71 @@
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use saoms_api::Time;
+use saoms_api::extension::{InvariantsRegistration, Measure, RunInvariants, Violation};
+use saoms_api::host::TopicDeclaration;
+
+use super::{Interest, Observer, Occurrence, RunEvent, SentMessage};
+use crate::report::{RunReport, RunStatus};
+
+/// The observer that holds a run to the invariants that are linked in.
+///
+/// Without any, it finds nothing.
+pub struct InvariantWatch {
+    all: Mutex<Vec<Box<dyn RunInvariants>>>,
+}
+
+impl Default for InvariantWatch {
+    fn default() -> InvariantWatch {
+        InvariantWatch { all: Mutex::new(InvariantsRegistration::linked()) }
+    }
+}
+
+impl std::fmt::Debug for InvariantWatch {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("InvariantWatch").field("invariants", &self.all().len()).finish()
+    }
+}
+
+impl InvariantWatch {
+    fn all(&self) -> MutexGuard<'_, Vec<Box<dyn RunInvariants>>> {
+        self.all.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The violations since the last call.
+    pub fn violations(&self) -> Vec<Violation> {
+        self.all().iter_mut().flat_map(|one| one.violations()).collect()
+    }
+
+    /// What the run came to, after its end.
+    pub fn measures(&self) -> Vec<Measure> {
+        self.all().iter().flat_map(|one| one.measures()).collect()
+    }
+}
+
+impl Observer for InvariantWatch {
+    fn interest(&self) -> Interest {
+        Interest::NONE
+    }
+
+    fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        // All of them have to be asked.
+        self.all().iter_mut().filter_map(|one| one.wants_topic(name, declared).then_some(())).count() > 0
+    }
+
+    fn message(&self, sent: &SentMessage) {
+        self.all().iter_mut().for_each(|one| one.message(&sent.topic, &sent.component, &sent.message));
+    }
+
+    fn event(&self, event: &RunEvent) {
+        if let Occurrence::Fault(call) = &event.what {
+            self.all().iter_mut().for_each(|one| one.fault(event.time, call));
+        }
+    }
+
+    fn end(&self, report: &RunReport) {
+        let at = Time::from_nanos((report.time_s * 1e9) as u64);
+        let status = report.outcome.status;
+        let is_cut_off = matches!(status, RunStatus::Elapsed | RunStatus::Stopped | RunStatus::Interrupted);
+        self.all().iter_mut().for_each(|one| one.end(at, is_cut_off, &|path| report.count(path)));
+    }
+}

@@ -1,0 +1,150 @@
+//! One run of a simulation.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_core::observe::{InvariantWatch, Observer};
+use saoms_core::report::RunStatus;
+use saoms_core::schedule::{RunningFleet, Settings};
+use saoms_lang::assembly::Assembly;
+use serde::{Deserialize, Serialize};
+
+use crate::command::run::faults::{FaultScript, Known, PlannedEvent};
+
+/// What is run with each seed.
+pub(super) struct Simulation {
+    pub(super) assembly: Assembly,
+    pub(super) known: Known,
+    pub(super) script: Option<FaultScript>,
+    pub(super) limit: Duration,
+}
+
+/// What came of one seed.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct SeedResult {
+    pub(super) seed: u64,
+    /// How the run ended, as its report says it.
+    pub(super) status: String,
+    pub(super) reasons: Vec<String>,
+    pub(super) time_s: f64,
+    pub(super) periods: u64,
+    pub(super) trace_hash: Option<String>,
+    /// How often each kind of fault was applied.
+    pub(super) faults: BTreeMap<String, u64>,
+    pub(super) measures: Vec<Figure>,
+    pub(super) violations: Vec<Found>,
+    /// Number of violations beyond those that are listed.
+    pub(super) more: usize,
+}
+
+/// A figure of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Figure {
+    pub(super) name: String,
+    pub(super) value: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) of: Option<f64>,
+}
+
+/// A violation of an invariant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Found {
+    pub(super) invariant: String,
+    pub(super) at_s: f64,
+    pub(super) text: String,
+}
+
+/// The most violations of one run that are listed.
+const MOST: usize = 20;
+/// Each so many seeds, one is run twice.
+const TWICE: u64 = 10;
+const SAME_TRACE: &str = "9 the same seed has the same trace";
+const RUNS: &str = "the run does not fail";
+
+impl SeedResult {
+    pub(super) fn is_clean(&self) -> bool {
+        self.violations.is_empty()
+    }
+
+    /// A seed whose run gave no result.
+    pub(super) fn failed(seed: u64, why: String) -> SeedResult {
+        let violations = vec![Found { invariant: RUNS.to_owned(), at_s: 0.0, text: why }];
+        SeedResult { seed, status: "crashed".to_owned(), violations, ..SeedResult::default() }
+    }
+}
+
+impl Simulation {
+    /// The events of the script with this seed.
+    pub(super) fn events(&self, seed: u64) -> Result<Vec<PlannedEvent>, String> {
+        let events = self.script.as_ref().map(|script| script.events(&self.known, seed));
+        events.unwrap_or_else(|| Ok(Vec::new())).map_err(|wrong| wrong.concat())
+    }
+
+    /// Runs a seed, some of them twice.
+    pub(super) fn run(&self, seed: u64) -> SeedResult {
+        let events = match self.events(seed) {
+            Ok(events) => events,
+            Err(why) => return SeedResult::failed(seed, why),
+        };
+        let mut result = self.run_with(seed, events.clone());
+        if seed.is_multiple_of(TWICE) {
+            let again = self.run_with(seed, events).trace_hash;
+            if again != result.trace_hash {
+                let hash = |hash: &Option<String>| hash.clone().unwrap_or_default();
+                let text =
+                    format!("one run has the trace {}, the other one {}", hash(&result.trace_hash), hash(&again));
+                result.violations.push(Found { invariant: SAME_TRACE.to_owned(), at_s: 0.0, text });
+            }
+        }
+        result
+    }
+
+    /// Runs a seed with these events once.
+    pub(super) fn run_with(&self, seed: u64, events: Vec<PlannedEvent>) -> SeedResult {
+        let watch = Arc::new(InvariantWatch::default());
+        let settings = Settings { limit: Some(self.limit), journal: 0, ..Settings::simulated(seed) };
+        let observers = vec![Arc::clone(&watch) as Arc<dyn Observer>];
+        let fleet = match RunningFleet::start(self.assembly.clone(), settings, observers) {
+            Ok(fleet) => fleet,
+            Err(error) => return SeedResult::failed(seed, error.to_string()),
+        };
+        for event in events {
+            if let Err(why) = event.play(&fleet.handle()) {
+                return SeedResult::failed(seed, why);
+            }
+        }
+        let report = fleet.run_to_end();
+        let applied = report.sections.get("faults").and_then(|faults| faults.get("applied")?.as_object());
+        let faults = applied.into_iter().flatten();
+        let faults = faults.filter_map(|(kind, count)| Some((kind.clone(), count.as_u64()?))).collect();
+        let mut violations: Vec<Found> = watch
+            .violations()
+            .into_iter()
+            .map(|one| Found { invariant: one.invariant.to_owned(), at_s: one.at.as_secs_f64(), text: one.text })
+            .collect();
+        if report.outcome.status == RunStatus::Failed {
+            let text = report.outcome.reasons.join("; ");
+            violations.push(Found { invariant: RUNS.to_owned(), at_s: report.time_s, text });
+        }
+        let more = violations.len().saturating_sub(MOST);
+        violations.truncate(MOST);
+        let figure =
+            |one: saoms_api::extension::Measure| Figure { name: one.name.to_owned(), value: one.value, of: one.of };
+        SeedResult {
+            seed,
+            status: serde_json::to_value(report.outcome.status)
+                .ok()
+                .and_then(|one| one.as_str().map(str::to_owned))
+                .unwrap_or_default(),
+            reasons: report.outcome.reasons,
+            time_s: report.time_s,
+            periods: report.periods,
+            trace_hash: report.trace_hash,
+            faults,
+            measures: watch.measures().into_iter().map(figure).collect(),
+            violations,
+            more,
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! `saoms simulate`: many seeds, faults and invariants.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{empty_folder, root, saoms_in, stdout};
+
+fn simulate(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let composite = root().join("composites/airport.composite");
+    let composite = composite.to_str().unwrap();
+    let output = saoms_in(folder, &[&["simulate", composite, "--for", "5min"], arguments].concat());
+    (output.status.code(), stdout(&output), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn seeds_without_faults_keep_the_invariants() {
+    let folder = empty_folder("simulate-clean");
+    let (code, told, progress) = simulate(&folder, &["--seeds", "4", "--first", "7", "-j", "2"]);
+    assert_eq!(code, Some(0), "{told}{progress}");
+    for row in [
+        "seeds                      7 to 10: 4\n",
+        "runs                       done 4\n",
+        "violations                 none\n",
+    ] {
+        assert!(told.contains(row), "{told}");
+    }
+    assert!(told.contains("pieces delivered           56 of 56 (100.0 %)\n"), "{told}");
+    assert!(progress.contains("4 of 4 seeds, 0 with violations\n"), "{progress}");
+}
+
+#[test]
+fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
+    let folder = empty_folder("simulate-failing");
+    let script = "at 1s for 20s delay 300ms\nat 1s for 1s jitter 1ms on CSMSTOPIC\nat 3s fail MasterRobot\n";
+    fs::write(folder.join("faults.txt"), script).unwrap();
+    let arguments = ["--seeds", "3", "--faults", "faults.txt", "--report", "json"];
+    let (code, told, _) = simulate(&folder, &arguments);
+    assert_eq!(code, Some(1), "{told}");
+    let report: Value = serde_json::from_str(&told).unwrap();
+    let ways = |value: &Value| value["delay"].as_u64().unwrap() > 100 && value["fail"] == 3;
+    assert!(ways(&report["faults"]), "{told}");
+    let failing = report["failing"].as_array().unwrap();
+    assert_eq!(failing.len(), 3, "{told}");
+    let of_collisions = report["results"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .position(|one| one["violations"][0]["invariant"].as_str().unwrap().starts_with("1 "));
+    let place = of_collisions.unwrap();
+    assert_eq!(failing[place]["faults"], serde_json::json!(["at 1s for 20s delay 300ms"]), "{told}");
+    let words: Vec<&str> = failing[place]["command"].as_str().unwrap().split(' ').skip(1).collect();
+    let again = saoms_in(&folder, &words);
+    let first = report["results"][place]["violations"][0]["text"].as_str().unwrap();
+    let seen = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert_eq!(again.status.code(), Some(1), "{seen}");
+    assert!(seen.contains(&format!("1 no two robots in a block: {first}\n")), "{seen}");
+    let (_, twice, _) = simulate(&folder, &arguments);
+    let twice: Value = serde_json::from_str(&twice).unwrap();
+    assert_eq!(report["results"], twice["results"], "in other processes it is the same");
+}
+
+#[test]
+fn wrong_input_starts_nothing() {
+    let folder = empty_folder("simulate-wrong");
+    fs::write(folder.join("faults.txt"), "at 1s lose 200 %\n").unwrap();
+    let (code, told, why) = simulate(&folder, &["--faults", "faults.txt"]);
+    assert_eq!((code, told.as_str()), (Some(2), ""), "{why}");
+    assert!(why.contains("faults.txt:1:12: found `200 %`") && why.ends_with("1 error: nothing was started\n"), "{why}");
+    let (code, _, why) = simulate(&folder, &["--faults", "falts.txt"]);
+    assert_eq!(code, Some(2), "{why}");
+    let output = saoms_in(&folder, &["simulate", "-"]);
+    assert_eq!(output.status.code(), Some(2));
+}
