@@ -22,13 +22,14 @@
         {"name": "rank", "type": "uint64"}, {"name": "robot", "type": "uint32"}]}}]})
 
 #define ROBOT_LIST                                                                                          \
-    JSON({"name": "RobotList", "key": "robot", "fields": [{"name": "robot", "type": "uint32"},              \
+    JSON({"name": "RobotList", "key": "robot", "place": "block", "fields": [{"name": "robot", "type": "uint32"},              \
         {"name": "active", "type": "bool"}, {"name": "battery", "type": "float64"},                         \
         {"name": "in_charge", "type": "bool"}, {"name": "asleep", "type": "bool"}, {"name": "charger", "type":) \
-    BLOCK JSON(}, {"name": "period", "type": "uint64"}]})
+    BLOCK JSON(}, {"name": "period", "type": "uint64"}, {"name": "block", "type":) BLOCK      \
+    JSON(}, {"name": "policy", "type": {"enumeration": "uint8", "values": {"SAFE": 0, "CLASSIC": 1}}}]})
 
 #define EVENT_LUGGAGE                                                                                       \
-    JSON({"name": "EventLuggage", "fields": [{"name": "robot", "type": "uint32"},                           \
+    JSON({"name": "EventLuggage", "place": "from", "fields": [{"name": "robot", "type": "uint32"},                           \
         {"name": "luggage", "type": "uint32"}, {"name": "stage", "type": {"enumeration": "uint8",           \
         "values": {"REQUEST": 0, "INTEREST": 1, "RELEASE": 2, "TAKEN": 3, "DELIVERED": 4, "REFUSED": 5,     \
         "GIVEN_UP": 6}}}, {"name": "from", "type":)                                                         \

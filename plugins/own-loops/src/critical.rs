@@ -130,7 +130,7 @@ impl Loop for Loner {
         context.send(&self.situations, situation)?;
         let (battery, charger) = (self.battery.get(robot)?, self.charge_block.get(robot)?);
         let period = self.period.get(robot)?;
-        let last = RobotList { robot: number, active: false, battery, charger, period, ..RobotList::default() };
+        let last = RobotList { robot: number, active: false, battery, charger, period, block, ..RobotList::default() };
         context.send(&self.robots, last)?;
         context.count("assistance", 1);
         warn!(context, "breaks down at {block}: asks for help");

@@ -37,6 +37,8 @@ pub struct Announcer {
     critical: Entry<bool>,
     #[senses]
     charge_block: Entry<Block>,
+    #[senses]
+    block: Entry<Block>,
 }
 
 impl Announcer {
@@ -49,6 +51,8 @@ impl Announcer {
             asleep: self.asleep.get(robot)?,
             charger: self.charge_block.get(robot)?,
             period: self.period.get(robot)?,
+            block: self.block.get(robot)?,
+            ..RobotList::default()
         })
     }
 }
@@ -64,7 +68,7 @@ impl Loop for Announcer {
         let is_news = self.said.as_ref().is_none_or(|said| {
             let battery =
                 if (now.battery - said.battery).abs() < self.properties.step { said.battery } else { now.battery };
-            RobotList { battery, ..now.clone() } != *said
+            RobotList { battery, block: said.block, ..now.clone() } != *said
         });
         let why = record!(battery_level: "battery is at {battery} %", battery = now.battery);
         Ok(is_news.then(|| Step::new(why, record!(announces_state: "announces its state"), now)))

@@ -7,7 +7,7 @@ use super::Block;
 pub struct Map {
     width: u32,
     height: u32,
-    /// One bit a block, row by row.
+    /// One bit a block, row by row; empty while no block is blocked, since each robot has a map.
     blocked: Vec<u64>,
     /// Number of blocked blocks.
     count: usize,
@@ -20,7 +20,7 @@ impl Map {
     /// A map without blocked blocks. Sides longer than [`LONGEST`](Map::LONGEST) are cut.
     pub fn new(width: u32, height: u32) -> Map {
         let (width, height) = (width.min(Map::LONGEST), height.min(Map::LONGEST));
-        Map { width, height, blocked: vec![0; (width as usize * height as usize).div_ceil(64)], count: 0 }
+        Map { width, height, blocked: Vec::new(), count: 0 }
     }
 
     /// Number of columns.
@@ -60,7 +60,12 @@ impl Map {
     /// True if a robot can be on the block: it is on the map, and not blocked.
     #[inline]
     pub fn is_free(&self, block: Block) -> bool {
-        self.place(block).is_some_and(|place| self.blocked[place / 64] & (1 << (place % 64)) == 0)
+        self.place(block).is_some_and(|place| self.word(place / 64) & (1 << (place % 64)) == 0)
+    }
+
+    #[inline]
+    fn word(&self, at: usize) -> u64 {
+        self.blocked.get(at).copied().unwrap_or(0)
     }
 
     /// True if no block is blocked.
@@ -93,7 +98,7 @@ impl Map {
     fn next(&self, mut place: usize, end: usize, is_blocked: bool) -> Option<usize> {
         let flipped = if is_blocked { 0 } else { u64::MAX };
         while place < end {
-            let rest = (self.blocked[place / 64] ^ flipped) >> (place % 64);
+            let rest = (self.word(place / 64) ^ flipped) >> (place % 64);
             if rest != 0 {
                 return Some(place + rest.trailing_zeros() as usize).filter(|found| *found < end);
             }
@@ -105,6 +110,9 @@ impl Map {
     /// Blocks a block; `false` if it is outside the map.
     pub fn set_blocked(&mut self, block: Block) -> bool {
         let Some(place) = self.place(block) else { return false };
+        if self.blocked.is_empty() {
+            self.blocked = vec![0; self.words_needed()];
+        }
         let (word, bit) = (&mut self.blocked[place / 64], 1 << (place % 64));
         if *word & bit == 0 {
             *word |= bit;
@@ -114,8 +122,12 @@ impl Map {
     }
 
     /// Bits of the blocked blocks, row by row, as sent in messages.
-    pub fn words(&self) -> &[u64] {
-        &self.blocked
+    pub fn words(&self) -> Vec<u64> {
+        if self.is_open() { vec![0; self.words_needed()] } else { self.blocked.clone() }
+    }
+
+    fn words_needed(&self) -> usize {
+        self.size().div_ceil(64)
     }
 
     /// A map from its sides and the [`words`](Map::words) of another map; `None` if they do not fit, or if the map has
@@ -124,6 +136,7 @@ impl Map {
         let size = width as usize * height as usize;
         let fits = size > 0 && width <= Map::LONGEST && height <= Map::LONGEST && blocked.len() == size.div_ceil(64);
         let count = blocked.iter().map(|word| word.count_ones() as usize).sum();
+        let blocked = if count == 0 { Vec::new() } else { blocked };
         fits.then_some(Map { width, height, blocked, count })
     }
 }

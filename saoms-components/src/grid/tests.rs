@@ -30,8 +30,8 @@ fn a_map_knows_its_blocks() {
     }
     assert!(map.set_blocked(Block::new(1, 1)) && map.set_blocked(Block::new(1, 1)));
     assert!(!map.is_open() && !map.is_free(Block::new(1, 1)) && map.contains(Block::new(1, 1)));
-    assert_eq!(Map::from_words(3, 2, map.words().to_vec()), Some(map.clone()));
-    assert_eq!(Map::from_words(30, 20, map.words().to_vec()), None);
+    assert_eq!(Map::from_words(3, 2, map.words()), Some(map.clone()));
+    assert_eq!(Map::from_words(30, 20, map.words()), None);
     for place in 0..map.size() {
         assert_eq!(map.place(map.block(place)), Some(place));
     }

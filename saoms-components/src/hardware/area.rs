@@ -15,7 +15,7 @@ pub struct Area {
 
 impl From<&Map> for Area {
     fn from(map: &Map) -> Area {
-        Area { width: map.width(), height: map.height(), blocked: map.words().to_vec() }
+        Area { width: map.width(), height: map.height(), blocked: map.words() }
     }
 }
 

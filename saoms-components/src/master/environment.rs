@@ -1,23 +1,39 @@
+use std::collections::VecDeque;
+
 use saoms_api::{
-    Cause, Class, Component, Context, Failure, Header, Message, Publisher, ReportValue, Saved, Subscription, Work,
-    info, record,
+    Cause, Class, Component, Context, Failure, Header, Loops, Message, Properties, Publisher, ReportValue, Saved,
+    SavedLoops, Subscription, Work, info, record,
 };
 
+use super::assignment::{AssignmentPolicy, Crew, MasterAssignment, MasterEnvironmentKnowledge};
 use super::event_filter::EventFilter;
 use super::open_luggage::{OpenLuggage, OpenMemory};
 use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent,
-    EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LuggageStage, REMOVAL, ROBOT_LIST, Removal,
-    RobotList, VISIT, Visit,
+    AREA, ASSIGNMENT, Assignment, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT,
+    EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LuggageStage, POSITION,
+    Position, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit, is_visit,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
-use crate::validation::{MessageValidator, Problem, SpeakerMemory, Validate};
+use crate::validation::{Problem, SpeakerMemory, Validate};
 
 /// The kind of alerts about luggage that no robot can carry.
 const GIVEN_UP: &str = "given_up";
+
+/// Properties of the master of the environment.
+#[derive(Clone, Debug, Properties)]
+pub struct MasterEnvironmentProperties {
+    /// Who decides which robot brings which luggage: `robots`, which declare their interest and take what they are the
+    /// closest to; or the master, `oldest` luggage first to the closest robot, or `optimal`, with the least total way.
+    #[property(default = "robots")]
+    pub(crate) assignment: AssignmentPolicy,
+}
+
+/// Greatest number of requests that are published in one execution; others follow in the next ones, so that no queue of
+/// a reader that has eight times the period overflows.
+const MAX_REQUESTS: usize = 128;
 
 /// Distributes the events of the environment to their topics: luggage and faults to the robots, exceptional events to
 /// the master of the robots.
@@ -27,11 +43,22 @@ const GIVEN_UP: &str = "given_up";
 /// is left, is reported as given up. A robot that starts later gets the requests that still wait. The luggage of a
 /// robot that somebody took off the floor waits again.
 #[derive(Debug, Class)]
-#[class(name = "saoms.MasterEnvironment", periodic, saves, also("unibg.saoms.MasterEnvironmentManagingSystem"))]
+#[class(
+    name = "saoms.MasterEnvironment",
+    periodic,
+    saves,
+    knowledge = MasterEnvironmentKnowledge,
+    loops(MasterAssignment),
+    subscribes(POSITION),
+    also("unibg.saoms.MasterEnvironmentManagingSystem")
+)]
 pub struct MasterEnvironment {
-    validator: MessageValidator,
-    filter: EventFilter,
-    open: OpenLuggage,
+    knowledge: MasterEnvironmentKnowledge,
+    loops: Loops,
+    /// Requests that are not published yet.
+    requests: VecDeque<(Cause, EventLuggage)>,
+    /// Number of those that are published in this execution.
+    requested: usize,
     #[subscribes(ENVIRONMENT)]
     events: Subscription<EnvironmentEvent>,
     #[subscribes(VISIT)]
@@ -56,6 +83,10 @@ pub struct MasterEnvironment {
     exceptional: Publisher<ExceptionalEvent>,
     #[publishes(FAULT)]
     faults: Publisher<Fault>,
+    #[publishes(ASSIGNMENT)]
+    assignments: Publisher<Assignment>,
+    /// Where robots are, if the master assigns luggage by that.
+    positions: Option<Subscription<Position>>,
 }
 
 /// State of a master, for the one that takes its place after a failure.
@@ -64,29 +95,64 @@ struct MasterMemory {
     speakers: SpeakerMemory,
     known: Numbers,
     open: OpenMemory,
+    requests: Vec<EventLuggage>,
+    loops: SavedLoops,
 }
 
 impl Component for MasterEnvironment {
-    type Properties = ();
+    type Properties = MasterEnvironmentProperties;
+
+    fn new(properties: MasterEnvironmentProperties) -> Result<Self, Failure> {
+        Ok(MasterEnvironment {
+            knowledge: MasterEnvironmentKnowledge::new(properties.assignment),
+            loops: Loops::default(),
+            requests: VecDeque::new(),
+            requested: 0,
+            events: Subscription::default(),
+            visits_asked: Subscription::default(),
+            visits: Publisher::default(),
+            area: Subscription::default(),
+            responses: Subscription::default(),
+            robots: Subscription::default(),
+            situations_heard: Subscription::default(),
+            removals: Subscription::default(),
+            luggage: Publisher::default(),
+            situations: Publisher::default(),
+            exceptional: Publisher::default(),
+            faults: Publisher::default(),
+            assignments: Publisher::default(),
+            positions: None,
+        })
+    }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         context.count("luggage.requested", 0);
         context.count("luggage.ignored", 0);
         let now = Timestamp::now(context);
         context.console(format_args!("MasterEnvironmentManagingSystem starts at {now}"));
-        Ok(())
+        if self.knowledge.policy != AssignmentPolicy::Robots {
+            self.positions = Some(context.subscribe(&POSITION)?);
+        }
+        self.loops = context.loops()?;
+        self.loops.initialize(&mut self.knowledge, context)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.requested = 0;
+        for _ in 0..self.requests.len().min(MAX_REQUESTS) {
+            let Some((cause, request)) = self.requests.pop_front() else { break };
+            context.because(cause);
+            self.request(request, context)?;
+        }
+        context.because(Cause::default());
         for (header, area) in context.receive(&self.area).with_headers() {
-            if self.validator.accepts(area, header, None, context) {
-                self.filter.learn(area.clone().into());
+            if self.knowledge.validator.accepts(area, header, None, context) {
+                self.knowledge.filter.learn(area.clone().into());
             }
         }
         let mut started = Vec::new();
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            if self.validator.accepts(robot, header, self.filter.area(), context) && self.open.hear_robot(robot, header)
-            {
+            if self.knowledge.accepts(robot, header, context) && self.knowledge.hear_robot(robot, header) {
                 started.push((header.cause, robot.robot));
             }
         }
@@ -106,16 +172,17 @@ impl Component for MasterEnvironment {
         }
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
             let is_own = header.sender == context.sender();
-            if !is_own && self.validator.accepts(situation, header, self.filter.area(), context) {
-                self.open.hear_situation(situation);
+            if !is_own && self.knowledge.accepts(situation, header, context) {
+                self.knowledge.open.hear_situation(situation);
+                self.knowledge.crew.hear_situation(situation);
             }
         }
         for (header, removal) in context.receive(&self.removals).with_headers() {
-            if self.validator.accepts(removal, header, self.filter.area(), context) {
-                self.open.hear_removal(removal);
+            if self.knowledge.accepts(removal, header, context) {
+                self.knowledge.open.hear_removal(removal);
             }
         }
-        for (robot, request) in self.open.open_again(self.filter.area().is_some()) {
+        for (robot, request) in self.knowledge.open.open_again(self.knowledge.filter.area().is_some()) {
             let (luggage, from) = (request.luggage, request.from);
             context.effect(record!(
                 opens_luggage_again: "luggage {luggage} waits again at {from}: robot {robot} is gone",
@@ -124,19 +191,19 @@ impl Component for MasterEnvironment {
                 robot
             ));
             info!(context, "luggage {luggage} waits again at {from}: robot {robot} is gone");
-            context.send(&self.luggage, request)?;
+            self.request(request, context)?;
         }
-        for request in self.open.visit_again() {
+        for request in self.knowledge.open.visit_again() {
             let visit = request.luggage - FIRST_VISIT;
             info!(context, "visit {visit} waits again: its robot left it");
-            context.send(&self.luggage, request)?;
+            self.request(request, context)?;
         }
         for (cause, robot) in started {
             context.because(cause);
             self.repeat_for(robot, context)?;
         }
         context.because(Cause::default());
-        for (luggage, from, to) in self.open.take_hopeless(context.now()) {
+        for (luggage, from, to) in self.knowledge.open.take_hopeless(context.now()) {
             context.alert(
                 GIVEN_UP,
                 luggage,
@@ -145,32 +212,40 @@ impl Component for MasterEnvironment {
             context.vote(Work::GivenUp);
             context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
         }
-        Ok(())
+        self.assign(context)
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.loops.shutdown(&mut self.knowledge, context)
     }
 
     fn save(&mut self) -> Result<Saved, Failure> {
         Ok(Saved::of(&MasterMemory {
-            speakers: self.validator.memory(),
-            known: self.filter.known().clone(),
-            open: self.open.memory(),
+            speakers: self.knowledge.validator.memory(),
+            known: self.knowledge.filter.known().clone(),
+            open: self.knowledge.open.memory(),
+            requests: self.requests.iter().map(|(_, request)| request.clone()).collect(),
+            loops: self.loops.save(&self.knowledge)?,
         }))
     }
 
     /// Goes on from a saved state; the area comes again from its topic.
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         let Some(memory) = saved.read::<MasterMemory>()? else { return Ok(()) };
-        self.validator.restore(memory.speakers);
-        self.filter = EventFilter::of(memory.known);
-        self.open = OpenLuggage::of(memory.open);
-        Ok(())
+        self.knowledge.validator.restore(memory.speakers);
+        self.knowledge.filter = EventFilter::of(memory.known);
+        self.knowledge.open = OpenLuggage::of(memory.open);
+        self.knowledge.crew = Crew::with_jobs(self.knowledge.open.jobs());
+        self.requests = memory.requests.into_iter().map(|request| (Cause::default(), request)).collect();
+        self.loops.restore(&mut self.knowledge, &memory.loops)
     }
 
     fn status(&self) -> Vec<(String, ReportValue)> {
-        self.open.status()
+        self.knowledge.open.status()
     }
 
     fn waits_for(&self) -> Option<String> {
-        Some(match self.open.first() {
+        Some(match self.knowledge.open.first() {
             None => "events".to_owned(),
             Some((first, more)) => format!("a robot to carry {}", pieces(first, more)),
         })
@@ -181,15 +256,15 @@ impl MasterEnvironment {
     fn sort(&mut self, context: &mut Context<'_>, header: Header, event: &EnvironmentEvent) -> Result<(), Failure> {
         for request in &event.luggage {
             let EventLuggage { luggage, from, to, .. } = *request;
-            match self.filter.luggage(request) {
+            match self.knowledge.filter.luggage(request) {
                 Ok(()) => {
-                    self.open.add(luggage, from, to);
+                    self.knowledge.open.add(luggage, from, to, context.now());
                     context.count("luggage.requested", 1);
-                    context.send(&self.luggage, EventLuggage::request(luggage, from, to))?;
+                    self.request(EventLuggage::request(luggage, from, to), context)?;
                 }
                 Err(refusal) => {
                     context.count("luggage.ignored", 1);
-                    self.validator.log_rejection(context, header, request, refusal.problem);
+                    self.knowledge.validator.log_rejection(context, header, request, refusal.problem);
                     if refusal.is_lost {
                         context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
                     }
@@ -200,15 +275,20 @@ impl MasterEnvironment {
             context.send(&self.exceptional, exceptional.clone())?;
         }
         for fault in &event.faults {
-            if let Err(problem) = fault.validate(header.sender, &mut self.validator, self.filter.area()) {
+            if let Err(problem) =
+                fault.validate(header.sender, &mut self.knowledge.validator, self.knowledge.filter.area())
+            {
                 context.count("faults.ignored", 1);
-                self.validator.log_rejection(context, header, fault, problem);
+                self.knowledge.validator.log_rejection(context, header, fault, problem);
             } else {
                 match fault.kind {
-                    FaultKind::Breakdown => self.open.break_down(fault.robot, context.now()),
+                    FaultKind::Breakdown => {
+                        self.knowledge.open.break_down(fault.robot, context.now());
+                        self.knowledge.crew.remove(fault.robot);
+                    }
                     FaultKind::Gone => {
                         let header = Header { sent: context.due(), ..header };
-                        self.open.take_away(fault.robot, header);
+                        self.knowledge.take_away(fault.robot, header);
                     }
                 }
                 context.send(&self.faults, fault.clone())?;
@@ -222,36 +302,73 @@ impl MasterEnvironment {
         if header.sender == context.sender() {
             return Ok(());
         }
-        let known = self.filter.knows(visit.visit).then_some(Problem::KnownLuggage);
-        let judged = visit.validate(header.sender, &mut self.validator, self.filter.area());
+        let MasterEnvironmentKnowledge { validator, filter, open, .. } = &mut self.knowledge;
+        let known = filter.knows(visit.visit).then_some(Problem::KnownLuggage);
+        let judged = visit.validate(header.sender, validator, filter.area());
         if let Some(problem) = known.or(judged.err()) {
             context.count("errands.ignored", 1);
-            self.validator.log_rejection(context, header, visit, problem);
+            validator.log_rejection(context, header, visit, problem);
             let [first, last] = visit.ends();
             return match known {
                 Some(_) => Ok(()),
                 None => context.send(&self.luggage, EventLuggage::given_up(visit.visit, first, last)),
             };
         }
-        self.filter.note(visit.visit);
-        self.open.add_visit(visit);
-        context.send(&self.luggage, visit.request())
+        filter.note(visit.visit);
+        open.add_visit(visit, context.now());
+        self.request(visit.request(), context)
+    }
+
+    /// Publishes a request, where robots decide by themselves who takes it, or one of them has to.
+    fn request(&mut self, request: EventLuggage, context: &mut Context<'_>) -> Result<(), Failure> {
+        let is_theirs =
+            self.knowledge.policy == AssignmentPolicy::Robots || is_visit(request.luggage) && request.robot != 0;
+        if !is_theirs {
+            return Ok(());
+        }
+        if self.requested >= MAX_REQUESTS {
+            self.requests.push_back((context.cause(), request));
+            return Ok(());
+        }
+        self.requested += 1;
+        context.send(&self.luggage, request)
+    }
+
+    /// Lets the loops assign what waits.
+    fn assign(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let now = context.now();
+        let heard = self.positions.map(|positions| context.receive(&positions).with_headers());
+        for (header, position) in heard.into_iter().flatten() {
+            if self.knowledge.accepts(position, header, context) {
+                self.knowledge.hear_position(position, now);
+            }
+        }
+        self.knowledge.expire(now);
+        self.loops.monitor(&mut self.knowledge, context)?;
+        self.loops.adapt(&mut self.knowledge, context)?;
+        for assignment in std::mem::take(&mut self.knowledge.assignments) {
+            self.knowledge.note_assigned(&assignment, now);
+            context.send(&self.assignments, assignment)?;
+        }
+        Ok(())
     }
 
     /// Repeats what waits, for a robot that has just started.
-    fn repeat_for(&self, robot: u32, context: &mut Context<'_>) -> Result<(), Failure> {
-        let (luggage, helps) = self.open.waiting_for(robot);
-        for request in luggage {
-            if let Some(visit) = self.open.visit(request.luggage) {
+    fn repeat_for(&mut self, robot: u32, context: &mut Context<'_>) -> Result<(), Failure> {
+        let (luggage, helps) = self.knowledge.open.waiting_for(robot);
+        // On a large map it hears of little luggage, and the master assigns what nobody takes.
+        let is_large = self.knowledge.is_large();
+        for request in luggage.into_iter().filter(|request| !is_large || is_visit(request.luggage)) {
+            if let Some(visit) = self.knowledge.open.visit(request.luggage) {
                 context.send(&self.visits, visit)?;
             }
-            context.send(&self.luggage, request.again_for(robot))?;
+            self.request(request.again_for(robot), context)?;
         }
         for situation in helps {
             context.send(&self.situations, situation.again_for(robot))?;
         }
         // Topics keep what robots that are gone said before.
-        let gone: Vec<u32> = self.open.gone().filter(|gone| *gone != robot).collect();
+        let gone: Vec<u32> = self.knowledge.open.gone().filter(|gone| *gone != robot).collect();
         for gone in gone {
             context.send(&self.faults, Fault::gone(gone))?;
         }
@@ -260,20 +377,20 @@ impl MasterEnvironment {
 
     /// Handles a message about luggage from a robot, or from another component on the robots' topic.
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
-        if header.sender == context.sender() || !self.validator.accepts(said, header, self.filter.area(), context) {
+        if header.sender == context.sender() || !self.knowledge.accepts(said, header, context) {
             return;
         }
         if said.stage == LuggageStage::Delivered {
             context.alert_over(GIVEN_UP, said.luggage);
         }
         if said.stage == LuggageStage::Request {
-            self.filter.note(said.luggage);
-            self.open.hear_response(said);
-        } else if self.filter.knows(said.luggage) {
-            self.open.hear_response(said);
+            self.knowledge.filter.note(said.luggage);
+            self.knowledge.hear_response(said, context.now());
+        } else if self.knowledge.filter.knows(said.luggage) {
+            self.knowledge.hear_response(said, context.now());
         } else {
             context.count("messages.ignored", 1);
-            self.validator.log_rejection(context, header, said, Problem::UnknownLuggage);
+            self.knowledge.validator.log_rejection(context, header, said, Problem::UnknownLuggage);
         }
     }
 }

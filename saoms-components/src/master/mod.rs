@@ -1,9 +1,14 @@
 //! The masters: of the environment, which distributes its events, and of the robots, which wakes them.
 
+mod assignment;
 mod environment;
 mod event_filter;
 mod open_luggage;
 pub mod robot;
 
-pub use environment::MasterEnvironment;
+pub use assignment::{
+    AssignmentDecision, AssignmentPolicy, Crew, MasterAssignment, MasterEnvironmentKnowledge, Member, Unassigned,
+};
+pub use environment::{MasterEnvironment, MasterEnvironmentProperties};
+pub use open_luggage::{OpenLuggage, WaitingPiece};
 pub use robot::MasterRobot;

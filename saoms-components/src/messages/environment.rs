@@ -69,11 +69,14 @@ pub enum LuggageStage {
 
 /// A request to bring luggage from one block to another, or the response of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
-#[message(speaker(
-    "robot",
-    unless(stage = "REQUEST"),
-    instead = "for new luggage publish a request; to free luggage that the robot has taken, send `breakdown` or `gone`"
-))]
+#[message(
+    place = "from",
+    speaker(
+        "robot",
+        unless(stage = "REQUEST"),
+        instead = "for new luggage publish a request; to free luggage that the robot has taken, send `breakdown` or `gone`"
+    )
+)]
 pub struct EventLuggage {
     /// Number of the robot that responds; in a request 0, or the number of the only robot that it is for.
     pub robot: u32,

@@ -2,6 +2,7 @@
 //! publishes and reads it, and with its validation.
 
 mod environment;
+mod jobs;
 mod movement;
 mod team;
 mod visit;
@@ -10,6 +11,7 @@ use saoms_api::host::TopicDeclaration;
 use saoms_api::{Message, Topic};
 
 pub use environment::*;
+pub use jobs::*;
 pub use movement::*;
 pub use team::*;
 pub use visit::*;

@@ -5,7 +5,7 @@ use std::fmt;
 use saoms_api::{Field, Message, Topic};
 
 use crate::grid::{Block, Map};
-use crate::robot::Job;
+use crate::robot::{Job, Policy};
 use crate::validation::{LONGEST_PERIOD, MessageValidator, Problem, Validate, of_robot};
 
 /// Commands to robots to wake or to sleep.
@@ -50,6 +50,7 @@ const LOW: f64 = 35.0;
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(
     key = "robot",
+    place = "block",
     speaker("robot", instead = "if the robot was removed from the floor, send `gone`; when it is back, `start` it")
 )]
 pub struct RobotList {
@@ -67,6 +68,10 @@ pub struct RobotList {
     pub charger: Block,
     /// Period of the robot in microseconds.
     pub period: u64,
+    /// Position of the robot when it published this.
+    pub block: Block,
+    /// Rules by which the robot acts.
+    pub policy: Policy,
 }
 
 impl RobotList {
@@ -102,7 +107,9 @@ impl Validate for RobotList {
         if self.period > LONGEST_PERIOD {
             return Err(Problem::Period { micros: self.period });
         }
-        Problem::of_block(self.charger, area)?;
+        for block in [self.charger, self.block] {
+            Problem::of_block(block, area)?;
+        }
         validator.check_speaker(self.robot, sender)?;
         validator.expect_introductions();
         Ok(())

@@ -11,6 +11,9 @@ use super::{RobotKnowledge, Trouble, Variables};
 /// Number of consecutive failures to move or to deposit after which the hardware counts as broken.
 const MOST_FAILURES: u32 = 5;
 
+/// Number of executions for which a robot waits for the next job after one that a master assigned.
+const LINGERING: u32 = 4;
+
 /// Maximum number of attempts to collect luggage.
 const MOST_ATTEMPTS: u32 = 3;
 
@@ -210,6 +213,9 @@ impl RobotKnowledge {
         variables.healer = false;
         self.job = None;
         self.stops.clear();
+        if self.is_assigned {
+            self.lingers = LINGERING;
+        }
     }
 
     /// Reports a collision if no world does: the robot that enters a block which another robot announced as its own

@@ -141,6 +141,10 @@ pub struct RobotKnowledge {
     /// Luggage that it delivered, or could not collect, and has not reported yet.
     #[entry]
     pub untold: Option<JobEnd>,
+    /// True if a master assigned the job.
+    pub(super) is_assigned: bool,
+    /// Number of executions for which it waits for the next assignment before it goes home.
+    pub(super) lingers: u32,
     /// True if it still holds luggage that it gave up, so that it cannot take any other.
     #[entry(quiet)]
     pub loaded: bool,
@@ -207,6 +211,8 @@ impl RobotKnowledge {
             trouble: None,
             failures: 0,
             untold: None,
+            is_assigned: false,
+            lingers: 0,
             loaded: false,
             said_homeward: false,
             energy: Energy::default(),

@@ -42,6 +42,8 @@ struct Memory {
     trouble: Option<Trouble>,
     failures: u32,
     untold: Option<JobEnd>,
+    is_assigned: bool,
+    lingers: u32,
     loaded: bool,
     said_homeward: bool,
     energy: Energy,
@@ -107,6 +109,8 @@ impl RobotKnowledge {
             trouble: self.trouble,
             failures: self.failures,
             untold: self.untold,
+            is_assigned: self.is_assigned,
+            lingers: self.lingers,
             loaded: self.loaded,
             said_homeward: self.said_homeward,
             energy: self.energy.clone(),
@@ -139,7 +143,8 @@ impl RobotKnowledge {
         self.note_running();
         (self.begun, self.offers_help) = (memory.begun, memory.offers_help);
         (self.trouble, self.failures) = (memory.trouble, memory.failures);
-        (self.untold, self.loaded, self.said_homeward) = (memory.untold, memory.loaded, memory.said_homeward);
+        (self.untold, self.is_assigned, self.lingers) = (memory.untold, memory.is_assigned, memory.lingers);
+        (self.loaded, self.said_homeward) = (memory.loaded, memory.said_homeward);
         (self.energy, self.leg) = (memory.energy, memory.leg);
         self.traffic.restore(memory.traffic);
         Ok(memory.loops)

@@ -30,16 +30,17 @@ use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, T
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{COLLISION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST, VISIT};
+use crate::messages::{ASSIGNMENT, COLLISION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST, VISIT};
 
 pub use battery::{Battery, Consumption};
 pub use job::Job;
 pub use knowledge::{JobEnd, Orders, RobotKnowledge, Trouble, Variables};
-pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival, WaitingLuggage};
+pub use lists::{Assigned, Help, Helps, Lists, Peers, Request, Requests, Rival, WaitingLuggage};
 pub use properties::{Policy, RobotProperties};
 pub use routes::Routes;
 
 use hardware_client::{HardwareClient, Reply};
+pub(crate) use receive::HEARD;
 use receive::Topics;
 
 /// The kind of alerts of robots that cannot go on without help.
@@ -79,7 +80,7 @@ const ASSISTANCE: &str = "assistance";
         )
     ),
     publishes(COLLISION),
-    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT),
+    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
@@ -131,7 +132,7 @@ impl Component for Robot {
             self.knowledge.began = Some(Time::START);
         } else {
             self.enter(context)?;
-            self.topics.hear_around(&self.knowledge, context)?;
+            self.topics.hear_around(&mut self.knowledge, context)?;
         }
         self.loops.initialize(&mut *self.knowledge, context)
     }

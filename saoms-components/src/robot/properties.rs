@@ -1,13 +1,14 @@
 use saoms_api::host::SmolStr;
-use saoms_api::{Failure, Finding, Place, Properties, PropertyField};
+use saoms_api::{Failure, Field, Finding, Place, Properties, PropertyField};
 
 use crate::grid::Block;
 use crate::robot::Consumption;
 
 /// Rules by which a robot acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field, PropertyField)]
 pub enum Policy {
     /// Never enters a block that another robot holds, and never takes a job for which the battery does not last.
+    #[default]
     Safe,
     /// The rules of the manual, for its transcripts: robots can collide and run out of battery.
     Classic,

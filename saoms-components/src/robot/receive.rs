@@ -5,20 +5,21 @@ use saoms_api::{Context, Failure, Header, Region, Subscription, record, warn};
 use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
 use crate::grid::Block;
 use crate::messages::{
-    EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList, VISIT,
-    Visit, is_visit,
+    ASSIGNMENT, Assignment, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position,
+    ROBOT_LIST, RobotList, VISIT, Visit, is_visit,
 };
 use crate::validation::Validate;
 
-/// Least distance within which a robot hears the positions of others, in blocks. Right of way needs three; the more it
-/// hears, the farther ahead it drives around robots that cannot move, and the better it knows which chargers are free.
-const HEARING: u32 = 16;
+/// Least distance within which a robot hears of other robots and of luggage, in blocks. Right of way needs three; the
+/// more it hears, the farther ahead it drives around robots that cannot move, and the better it knows which chargers
+/// are free.
+const HEARING: u32 = 8;
 
 /// Number of blocks that a robot drives before its region of hearing follows.
 const SLACK: u32 = 4;
 
-/// Number of blocks of a map up to which a robot hears all positions: a region costs more than it saves there.
-const SMALL: usize = 4 * (2 * (HEARING + SLACK) as usize + 1).pow(2);
+/// Number of blocks of a map up to which a robot hears all: a region costs more than it saves there.
+pub(crate) const HEARD: usize = 82 * 82;
 
 /// The topics that a robot hears by itself.
 #[derive(Debug, Default)]
@@ -28,7 +29,10 @@ pub(super) struct Topics {
     visits: Subscription<Visit>,
     positions: Subscription<Position>,
     faults: Subscription<Fault>,
-    /// The middle of the region of which positions are heard; `None` while it is the whole map.
+    assignments: Subscription<Assignment>,
+    /// The block of the charger for which assignments are heard; `None` while it is for all.
+    hears_for: Option<Block>,
+    /// The middle of the region that is heard; `None` while it is the whole map.
     hears_around: Option<Block>,
 }
 
@@ -40,24 +44,41 @@ impl Topics {
             visits: context.subscribe(&VISIT)?,
             positions: context.subscribe(&POSITION)?,
             faults: context.subscribe(&FAULT)?,
+            assignments: context.subscribe(&ASSIGNMENT)?,
+            hears_for: None,
             hears_around: None,
         })
     }
 
-    /// Hears positions around the robot alone, so that what it hears does not grow with the fleet. A robot that is not
-    /// on the floor yet may be anywhere.
-    pub(super) fn hear_around(&mut self, robot: &RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+    /// Hears what is said around the robot alone, so that it does not grow with the fleet. A robot that is not on the
+    /// floor yet may be anywhere.
+    pub(super) fn hear_around(&mut self, robot: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let Block { x, y } = robot.block;
-        let is_near = |middle: Block| middle.distance(robot.block) <= SLACK;
-        if self.hears_around.is_some_and(is_near)
+        let is_near = self.hears_around.is_some_and(|middle: Block| middle.distance(robot.block) <= SLACK);
+        let is_home = self.hears_for == Some(robot.charge_block);
+        if is_near && is_home
             || robot.policy != Policy::Safe
             || !robot.hardware.has_entered()
-            || robot.routes.map().is_some_and(|map| map.size() <= SMALL)
+            || robot.routes.map().is_some_and(|map| map.size() <= HEARD)
         {
             return Ok(());
         }
+        if !is_home {
+            let Block { x, y } = robot.charge_block;
+            self.hears_for = Some(robot.charge_block);
+            context.set_region(&self.assignments, Some(Region::around((x, y), 0)))?;
+        }
+        if is_near {
+            return Ok(());
+        }
         self.hears_around = Some(robot.block);
-        context.set_region(&self.positions, Some(Region::around((x, y), HEARING + SLACK)))
+        let region = Region::around((x, y), HEARING + SLACK);
+        context.set_region(&self.positions, Some(region))?;
+        context.set_region(&self.robots, Some(region))?;
+        context.set_region(&self.luggage, Some(region))?;
+        robot.validator.hear_a_part();
+        robot.lists.requests.keep(|from| region.contains((from.x, from.y)));
+        Ok(())
     }
 }
 
@@ -78,6 +99,7 @@ impl RobotKnowledge {
         self.hear_luggage(topics.luggage, context);
         self.hear_positions(topics.positions, context);
         if self.policy == Policy::Safe {
+            self.hear_assignments(topics.assignments, context);
             self.learn_obstacles();
         }
         topics.hear_around(self, context)
@@ -142,6 +164,13 @@ impl RobotKnowledge {
 
     /// Handles the states of other robots.
     fn hear_robots(&mut self, robots: Subscription<RobotList>, context: &mut Context<'_>) {
+        for departed in context.departed(&robots) {
+            let robot = u32::try_from(departed.key).ok().filter(|robot| *robot != self.number);
+            if let Some(robot) = robot {
+                self.lists.lose(robot);
+                self.validator.forget_speaker(robot);
+            }
+        }
         for (header, robot) in context.receive(&robots).with_headers() {
             if self.accepts(robot, header, context) && self.lists.gone.hears(robot, header) {
                 self.lists.hear_robot(robot);
@@ -180,6 +209,15 @@ impl RobotKnowledge {
         for (header, visit) in context.receive(&visits).with_headers() {
             if self.policy == Policy::Safe && self.accepts(visit, header, context) {
                 self.lists.requests.hear_visit(visit);
+            }
+        }
+    }
+
+    /// Handles what a master assigned to this robot.
+    fn hear_assignments(&mut self, assignments: Subscription<Assignment>, context: &mut Context<'_>) {
+        for (header, assignment) in context.receive(&assignments).with_headers() {
+            if assignment.robot == self.number && self.accepts(assignment, header, context) {
+                self.lists.requests.hear_assignment(assignment, header.cause);
             }
         }
     }

@@ -53,8 +53,10 @@ struct Area {
     map: Map,
     /// The map without obstacles, if there are any.
     empty: Option<Map>,
-    /// Chargers of other robots, as blocked blocks of a map.
+    /// Chargers of other robots, as blocked blocks of a map, where ways are searched.
     chargers: Map,
+    /// The same, the newest last, where they are not: such a map can be very large.
+    charger_list: Vec<Block>,
     charge_block: Block,
     searched: bool,
 }
@@ -62,12 +64,36 @@ struct Area {
 /// Maximum number of blocks of an open map that is searched.
 const SEARCHED: usize = 16_384;
 
+/// Maximum number of chargers that are known of a map that is not searched.
+const LISTED: usize = 256;
+
+impl Area {
+    fn is_charger(&self, block: Block) -> bool {
+        match self.searched {
+            true => self.chargers.contains(block) && !self.chargers.is_free(block),
+            false => self.charger_list.contains(&block),
+        }
+    }
+
+    /// Adds a charger; true if other ways become better.
+    fn learn_charger(&mut self, charger: Block) -> bool {
+        if self.searched {
+            return self.chargers.set_blocked(charger);
+        }
+        if self.charger_list.len() >= LISTED {
+            self.charger_list.remove(0);
+        }
+        self.charger_list.push(charger);
+        false
+    }
+}
+
 impl Routes {
     /// Sets the map and the block of the charger.
     pub fn learn(&mut self, map: Map, charge_block: Block) {
         let searched = !map.is_open() || map.size() <= SEARCHED;
         let chargers = Map::new(map.width(), map.height());
-        let mut area = Area { map, empty: None, chargers, charge_block, searched };
+        let mut area = Area { map, empty: None, chargers, charger_list: Vec::new(), charge_block, searched };
         if !self.obstacles.is_empty() {
             area.empty = Some(area.map.clone());
             self.obstacles.iter().for_each(|(_, block)| _ = area.map.set_blocked(*block));
@@ -103,10 +129,10 @@ impl Routes {
     /// Adds the charger of another robot.
     pub fn learn_charger(&mut self, charger: Block) {
         if let Some(area) = &mut self.area
-            && area.chargers.is_free(charger)
             && charger != area.charge_block
+            && !area.is_charger(charger)
+            && area.learn_charger(charger)
         {
-            area.chargers.set_blocked(charger);
             self.forget_searches();
         }
     }
@@ -116,8 +142,9 @@ impl Routes {
         if let Some(area) = &mut self.area {
             area.charge_block = charge_block;
             area.chargers = Map::new(area.map.width(), area.map.height());
+            area.charger_list.clear();
             for charger in others.filter(|charger| *charger != charge_block) {
-                area.chargers.set_blocked(charger);
+                area.learn_charger(charger);
             }
             self.forget_searches();
         }
@@ -167,7 +194,7 @@ impl Routes {
 
     /// True if the block is the charger of another robot.
     pub fn is_charger(&self, block: Block) -> bool {
-        self.area.as_ref().is_some_and(|area| area.chargers.contains(block) && !area.chargers.is_free(block))
+        self.area.as_ref().is_some_and(|area| area.is_charger(block))
     }
 
     /// Number of changes that made other ways possible or necessary.

@@ -6,7 +6,8 @@ use super::{JobEnd, RobotKnowledge};
 use crate::messages::{CriticalKind, CriticalSituation, EventLuggage, LuggageStage, Position, Priority, RobotList};
 
 impl RobotKnowledge {
-    /// Reports the outcome of a job. Luggage that this robot could not collect waits again for the others.
+    /// Reports the outcome of a job. Luggage that this robot could not collect waits again for the others, or for the
+    /// master that assigned it.
     pub(super) fn report_outcome(
         &mut self,
         luggage: Publisher<EventLuggage>,
@@ -16,8 +17,8 @@ impl RobotKnowledge {
         context.send(&luggage, job.response(self.number, self.block, stage))?;
         if stage == LuggageStage::Refused {
             self.lists.requests.refuse(job.luggage);
-            if self.visits {
-                // The master knows all the blocks, and asks the others.
+            if self.visits || self.is_assigned {
+                // The master asks the others.
                 return Ok(());
             }
             context.send(&luggage, EventLuggage::request(job.luggage, job.from, job.to))?;
@@ -72,6 +73,8 @@ impl RobotKnowledge {
             asleep: self.variables.asleep,
             charger: self.charge_block,
             period: self.period,
+            block: self.block,
+            policy: self.policy,
         }
     }
 }

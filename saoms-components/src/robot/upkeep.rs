@@ -10,6 +10,7 @@ impl RobotKnowledge {
     pub(super) fn begin_execution(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let now = context.now();
         self.polled = None;
+        self.lingers = self.lingers.saturating_sub(1);
         self.elapsed = self.executed_at.map_or(std::time::Duration::ZERO, |last| now.since(last));
         self.executed_at = Some(now);
         self.take_measured();

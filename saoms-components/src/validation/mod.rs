@@ -26,6 +26,8 @@ pub(crate) struct MessageValidator {
     speakers: Vec<(u32, u32)>,
     /// True if robots announce themselves, so that a message about any other robot is rejected.
     introduced: bool,
+    /// True if the component hears the robots of a part of the map alone, so that others are not unknown.
+    hears_a_part: bool,
     /// Mistakes that were logged.
     logged: Vec<(u32, &'static str, Discriminant<Problem>)>,
 }
@@ -121,7 +123,19 @@ impl MessageValidator {
 
     /// Records that robots announce themselves.
     pub(crate) fn expect_introductions(&mut self) {
-        self.introduced = true;
+        self.introduced = !self.hears_a_part;
+    }
+
+    /// Records that the component hears the robots of a part of the map alone.
+    pub(crate) fn hear_a_part(&mut self) {
+        (self.hears_a_part, self.introduced) = (true, false);
+    }
+
+    /// Forgets who speaks for a robot that is out of earshot.
+    pub(crate) fn forget_speaker(&mut self, robot: u32) {
+        if let Ok(place) = self.speakers.binary_search_by_key(&robot, |(known, _)| *known) {
+            self.speakers.remove(place);
+        }
     }
 
     /// The component that speaks for a robot.

@@ -1,13 +1,14 @@
 use std::collections::VecDeque;
 
 use saoms_api::host::SharedMessage;
+use saoms_lang::assembly::TaskProperties;
 
 /// The messages of an event topic, each once and until the slowest reader has read it, and the positions of the
 /// readers.
 ///
 /// Messages are numbered from 0. Messages that all readers have read are removed in batches, so that neither publishing
 /// nor reading looks at other readers.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub(super) struct EventLog {
     /// The number of the first message held.
     first: u64,
@@ -16,22 +17,30 @@ pub(super) struct EventLog {
     free: Vec<u32>,
     /// Number of messages at which those that all readers have read are removed next.
     tidy_at: usize,
+    /// Number of messages that may wait for a reader whose queue grows with the users of the topic.
+    grown: u64,
 }
 
 #[derive(Clone)]
 struct EventReader {
     /// The number of the next message to read.
     next: u64,
-    /// Number of messages that may wait; 0 marks a free place.
+    /// Number of messages that may wait; 0 marks a free place, [`GROWS`] that it grows with the users of the topic.
     queue: u64,
     lost: u64,
+}
+
+const GROWS: u64 = u64::MAX;
+
+fn length(queue: Option<usize>) -> u64 {
+    queue.map_or(GROWS, |queue| queue.max(1) as u64)
 }
 
 impl EventReader {
     /// Gives up the oldest messages that do not fit into the queue.
     #[inline]
-    fn overflow(&mut self, end: u64) {
-        let oldest = end.saturating_sub(self.queue);
+    fn overflow(&mut self, end: u64, grown: u64) {
+        let oldest = end.saturating_sub(if self.queue == GROWS { grown } else { self.queue });
         if self.next < oldest {
             self.lost += oldest - self.next;
             self.next = oldest;
@@ -39,19 +48,42 @@ impl EventReader {
     }
 }
 
+impl Default for EventLog {
+    fn default() -> EventLog {
+        let grown = TaskProperties::default_queue(0) as u64;
+        EventLog { first: 0, messages: VecDeque::new(), readers: Vec::new(), free: Vec::new(), tidy_at: 0, grown }
+    }
+}
+
 impl EventLog {
     /// Number of messages that wait for a reader, and of those that may wait.
     pub(super) fn waiting(&self, place: u32) -> (u64, u64) {
         let reader = &self.readers[place as usize];
-        ((self.end() - reader.next).min(reader.queue), reader.queue)
+        let queue = if reader.queue == GROWS { self.grown } else { reader.queue };
+        ((self.end() - reader.next).min(queue), queue)
+    }
+
+    /// True unless a reader has half of its queue to read.
+    pub(super) fn has_room(&self) -> bool {
+        let readers = (0..).zip(&self.readers).filter(|(_, reader)| reader.queue > 0);
+        let is_half_full = |place| {
+            let (waiting, queue) = self.waiting(place);
+            waiting > queue / 2
+        };
+        !readers.map(|(place, _)| place).any(is_half_full)
+    }
+
+    /// Users that leave change nothing: what they sent still waits.
+    pub(super) fn set_users(&mut self, users: usize) {
+        self.grown = self.grown.max(TaskProperties::default_queue(users) as u64);
     }
 
     fn end(&self) -> u64 {
         self.first + self.messages.len() as u64
     }
 
-    pub(super) fn join(&mut self, queue: usize) -> u32 {
-        let reader = EventReader { next: self.end(), queue: queue.max(1) as u64, lost: 0 };
+    pub(super) fn join(&mut self, queue: Option<usize>) -> u32 {
+        let reader = EventReader { next: self.end(), queue: length(queue), lost: 0 };
         match self.free.pop() {
             Some(place) => {
                 self.readers[place as usize] = reader;
@@ -76,15 +108,15 @@ impl EventLog {
         self.tidy();
     }
 
-    pub(super) fn resize(&mut self, place: u32, queue: usize) {
-        self.readers[place as usize].queue = queue.max(1) as u64;
+    pub(super) fn resize(&mut self, place: u32, queue: Option<usize>) {
+        self.readers[place as usize].queue = length(queue);
     }
 
     /// Frees a reader's place. Returns the number of messages that it lost since its last read.
     pub(super) fn leave(&mut self, place: u32) -> u64 {
-        let end = self.end();
+        let (end, grown) = (self.end(), self.grown);
         let reader = &mut self.readers[place as usize];
-        reader.overflow(end);
+        reader.overflow(end, grown);
         let lost = reader.lost;
         reader.queue = 0;
         self.free.push(place);
@@ -107,10 +139,10 @@ impl EventLog {
     /// Removes the messages that every reader has read. The cost is linear in the number of readers, and is paid once
     /// in as many messages.
     fn tidy(&mut self) {
-        let end = self.end();
+        let (end, grown) = (self.end(), self.grown);
         let mut needed = end;
         for reader in self.readers.iter_mut().filter(|reader| reader.queue > 0) {
-            reader.overflow(end);
+            reader.overflow(end, grown);
             needed = needed.min(reader.next);
         }
         let done = (needed - self.first) as usize;
@@ -127,12 +159,12 @@ impl EventLog {
     /// Appends the messages that are new to a reader. Returns the number of messages that it lost since its last read.
     #[inline]
     pub(super) fn collect(&mut self, place: u32, inbox: &mut Vec<SharedMessage>) -> u64 {
-        let end = self.end();
+        let (end, grown) = (self.end(), self.grown);
         let reader = &mut self.readers[place as usize];
         if reader.next == end {
             return std::mem::take(&mut reader.lost);
         }
-        reader.overflow(end);
+        reader.overflow(end, grown);
         let start = (reader.next - self.first) as usize;
         reader.next = end;
         let lost = std::mem::take(&mut reader.lost);

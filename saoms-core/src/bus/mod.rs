@@ -135,11 +135,11 @@ impl Bus {
 
     /// Takes a publisher off the topic. Retained messages stay.
     pub fn unpublish(&mut self, topic: TopicId) {
-        self.topics[topic.0 as usize].users -= 1;
+        self.topics[topic.0 as usize].lose_user();
     }
 
     /// Registers a reader. It gets what a state topic retains, and the messages of an event topic from now on; of the
-    /// latter, at most `queue` wait for it.
+    /// latter, at most `queue` wait for it; `None` for a number that grows with the users of the topic.
     ///
     /// # Errors
     /// The topic carries other messages, or is of the other kind.
@@ -148,18 +148,18 @@ impl Bus {
         name: &str,
         declared: &TopicDeclaration<'_>,
         by: &Arc<str>,
-        queue: usize,
+        queue: impl Into<Option<usize>>,
     ) -> Result<TopicReader, Mismatch> {
         let id = self.user(name, declared, by)?;
         let topic = &mut self.topics[id.0 as usize];
-        let reader = topic.reader(queue);
+        let reader = topic.reader(queue.into());
         self.readers = self.readers.wrapping_add(1);
         Ok(TopicReader { topic: id, number: self.readers, reader, triggers: None })
     }
 
     /// Takes a reader off its topic. Returns the number of messages that it lost since it last collected.
     pub fn unsubscribe(&mut self, subscription: TopicReader) -> u64 {
-        self.topics[subscription.topic.0 as usize].users -= 1;
+        self.topics[subscription.topic.0 as usize].lose_user();
         let own = self.read_by(&subscription);
         let topic = &mut self.topics[own];
         if let Some(place) = topic.triggers.iter().position(|number| Some(*number) == subscription.triggers) {
@@ -214,6 +214,11 @@ impl Bus {
         self.topics[topic.0 as usize].retained()
     }
 
+    /// True unless events wait on a topic that fill half of the queue of a reader.
+    pub fn has_room(&self, topic: TopicId) -> bool {
+        self.topics[topic.0 as usize].has_room()
+    }
+
     /// True if there are messages that a reader has not collected.
     pub fn has_news(&self, subscription: &TopicReader) -> bool {
         self.topics[self.read_by(subscription)].has_news(&subscription.reader)
@@ -246,11 +251,16 @@ impl Bus {
     }
 
     /// Lets a reader get the messages of a region alone, of which at most `queue` events wait, or all again.
-    pub fn set_region(&mut self, subscription: &mut TopicReader, region: Option<Region>, queue: usize) {
+    pub fn set_region(
+        &mut self,
+        subscription: &mut TopicReader,
+        region: Option<Region>,
+        queue: impl Into<Option<usize>>,
+    ) {
         let own = self.read_by(subscription);
         let topic = &mut self.topics[own];
         let before = subscription.reader;
-        topic.set_region(&mut subscription.reader, region, queue);
+        topic.set_region(&mut subscription.reader, region, queue.into());
         if subscription.reader != before {
             topic.readers.moved(subscription.number, subscription.reader);
         }
@@ -276,9 +286,9 @@ impl Bus {
     }
 
     /// Gives a reader another bound for the events that wait for it.
-    pub fn resize(&mut self, subscription: &TopicReader, queue: usize) {
+    pub fn resize(&mut self, subscription: &TopicReader, queue: impl Into<Option<usize>>) {
         let own = self.read_by(subscription);
-        self.topics[own].resize(&subscription.reader, queue);
+        self.topics[own].resize(&subscription.reader, queue.into());
     }
 
     /// The topic that a subscription reads.

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 use saoms_api::{Departed, Region};
+use saoms_lang::assembly::TaskProperties;
 
 use super::Mismatch;
 use super::events::EventLog;
@@ -145,8 +146,19 @@ impl BusTopic {
             self.store = store(declared.kind);
             self.regions = None;
         }
-        self.users += 1;
+        self.set_users(self.users + 1);
         Ok(())
+    }
+
+    pub(super) fn lose_user(&mut self) {
+        self.set_users(self.users - 1);
+    }
+
+    fn set_users(&mut self, users: usize) {
+        self.users = users;
+        if let Store::Event(log) = &mut self.store {
+            log.set_users(users);
+        }
     }
 
     fn mismatch(&self, declared: &TopicDeclaration<'_>) -> Mismatch {
@@ -165,17 +177,17 @@ impl BusTopic {
         }
     }
 
-    pub(super) fn reader(&mut self, queue: usize) -> ReadPosition {
+    pub(super) fn reader(&mut self, queue: Option<usize>) -> ReadPosition {
         match &mut self.store {
             Store::State(_) => ReadPosition::State { read: 0, before: 0 },
             Store::Event(log) => ReadPosition::Event(log.join(queue)),
         }
     }
 
-    pub(super) fn resize(&mut self, reader: &ReadPosition, queue: usize) {
+    pub(super) fn resize(&mut self, reader: &ReadPosition, queue: Option<usize>) {
         match (&mut self.store, &mut self.regions, reader) {
             (Store::Event(log), _, ReadPosition::Event(place)) => log.resize(*place, queue),
-            (_, Some(regions), ReadPosition::Region(place)) => regions.resize(*place, queue),
+            (_, Some(regions), ReadPosition::Region(place)) => regions.resize(*place, of_region(queue)),
             _ => {}
         }
     }
@@ -194,6 +206,14 @@ impl BusTopic {
         match &self.store {
             Store::State(_) => 0,
             Store::Event(log) => log.messages.len(),
+        }
+    }
+
+    /// True unless events wait that fill half of the queue of a reader.
+    pub(super) fn has_room(&self) -> bool {
+        match &self.store {
+            Store::State(_) => true,
+            Store::Event(log) => log.has_room(),
         }
     }
 
@@ -240,7 +260,7 @@ impl BusTopic {
     }
 
     /// Lets a reader get the messages of a region alone, or all again.
-    pub(super) fn set_region(&mut self, reader: &mut ReadPosition, region: Option<Region>, queue: usize) {
+    pub(super) fn set_region(&mut self, reader: &mut ReadPosition, region: Option<Region>, queue: Option<usize>) {
         let table = self.store.table();
         match (region, &*reader) {
             (Some(region), ReadPosition::Region(place)) => {
@@ -250,7 +270,7 @@ impl BusTopic {
             }
             (Some(region), _) => {
                 let regions = self.regions.get_or_insert_with(|| Box::new(RegionReaders::of(table)));
-                let place = regions.join(region, queue, table);
+                let place = regions.join(region, of_region(queue), table);
                 let before = std::mem::replace(reader, ReadPosition::Region(place));
                 self.leave(before);
             }
@@ -328,6 +348,11 @@ impl Store {
             Store::Event(_) => None,
         }
     }
+}
+
+/// The queue of a reader with a region: what is around it does not grow with the users of the topic.
+fn of_region(queue: Option<usize>) -> usize {
+    queue.unwrap_or(TaskProperties::default_queue(0))
 }
 
 fn store(kind: TopicKind) -> Store {

@@ -16,7 +16,7 @@ use super::order::PendingOrder;
 use super::shared::Shared;
 use super::speakers::ForeignSpeaker;
 use super::takers::{EventMessage, RaiseError};
-use crate::bus::TopicId;
+use crate::bus::{Bus, TopicId};
 use crate::fault::TimedFault;
 use crate::journal::JournalEntry;
 use crate::observe::{Notification, Occurrence, SentMessage};
@@ -34,6 +34,9 @@ pub fn is_from_outside(component: &str) -> bool {
 /// Number of the fleet's longest periods after an injection before the run may end for want of work: a message needs
 /// one period to be read, and the messages of its reader need another one.
 const SETTLING: u64 = 3;
+
+/// Number of the fleet's longest periods for which messages from outside wait for room in the queues of their readers.
+const PATIENCE: u64 = 16;
 
 /// A message for a topic of a running fleet, from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +125,8 @@ pub(super) struct Injections {
     faults: usize,
     /// Number of holds that keep the run from ending for want of work.
     pub(super) holds: usize,
+    /// Time since which messages wait for room in the queues of their readers.
+    held_since: Option<u64>,
 }
 
 enum Due {
@@ -176,6 +181,24 @@ impl Injections {
 
     pub(super) fn hold_up(&mut self, when: u64, topic: TopicId, message: SharedMessage) {
         self.add(when, Due::Late { topic, message });
+    }
+
+    /// True if the next message that is due fits into the queues of its readers, or there is none.
+    fn has_room(&self, bus: &Bus, now: u64) -> bool {
+        match self.waiting.first_key_value().filter(|((when, _), _)| *when <= now) {
+            Some((_, Due::Message { topic, .. })) => bus.has_room(*topic),
+            Some((_, Due::Event { messages, .. })) => {
+                messages.iter().filter_map(|message| bus.find(&message.topic)).all(|topic| bus.has_room(topic))
+            }
+            _ => true,
+        }
+    }
+
+    /// Lets what is due wait until then, in its order.
+    fn postpone(&mut self, now: u64, until: u64) {
+        let later = self.waiting.split_off(&(now.saturating_add(1), 0));
+        let held = std::mem::replace(&mut self.waiting, later);
+        self.waiting.extend(held.into_iter().map(|((_, number), due)| ((until, number), due)));
     }
 
     fn add(&mut self, when: u64, due: Due) {
@@ -274,7 +297,13 @@ impl Engine {
     pub(super) fn deliver_injections(&mut self, now: u64) {
         let mut delivered = false;
         self.standstill.note_effect(now);
-        while let Some(entry) = self.injections.waiting.first_entry().filter(|entry| entry.key().0 <= now) {
+        loop {
+            if self.injections.has_room(&self.bus, now) {
+                self.injections.held_since = None;
+            } else if self.hold_injections(now) {
+                break;
+            }
+            let Some(entry) = self.injections.waiting.first_entry().filter(|entry| entry.key().0 <= now) else { break };
             let when = entry.key().0;
             match entry.remove() {
                 Due::Message { topic, bytes, key, place, text } => {
@@ -313,6 +342,24 @@ impl Engine {
         }
     }
 
+    /// Lets messages from outside that find no room in the queues of their readers wait for the next execution. False
+    /// if they have waited for long: their readers do not read.
+    #[cold]
+    fn hold_injections(&mut self, now: u64) -> bool {
+        let since = *self.injections.held_since.get_or_insert(now);
+        let next = self.queue.earliest().filter(|_| now - since <= self.longest_period().saturating_mul(PATIENCE));
+        let Some(next) = next else { return false };
+        let until = next.max(now).saturating_add(1);
+        self.injections.postpone(now, until);
+        self.look_at = self.look_at.min(until);
+        true
+    }
+
+    fn longest_period(&self) -> u64 {
+        let members = self.slots.iter().filter(|slot| slot.is_member());
+        members.map(|slot| slot.policy.period).max().unwrap_or(0)
+    }
+
     /// The next instant at which something from outside can take effect. At the same time as executions that are over,
     /// it would come before them when it is played again.
     pub(super) fn next_instant(&self, now: u64) -> u64 {
@@ -322,8 +369,7 @@ impl Engine {
     /// Keeps the run from ending for want of work until the effects of an event have reached all components.
     #[cold]
     pub(super) fn settle(&mut self, now: u64) {
-        let periods = self.slots.iter().filter(|slot| slot.is_member()).map(|slot| slot.policy.period);
-        let settled = now.saturating_add(periods.max().unwrap_or(0).saturating_mul(SETTLING));
+        let settled = now.saturating_add(self.longest_period().saturating_mul(SETTLING));
         self.injections.add(settled, Due::Settled);
         self.look_at = self.look_at.min(settled);
     }

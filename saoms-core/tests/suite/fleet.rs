@@ -61,7 +61,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
             "startup" => task.run_on_startup = value == "true",
             "interrupt" => task.may_interrupt_if_running = value == "true",
             "jms" => task.use_jms = value == "true",
-            "queue" => task.queue = value.parse().unwrap(),
+            "queue" => task.queue = Some(value.parse().unwrap()),
             "loss" => task.loss = if value == "accept" { Loss::Accept } else { Loss::Fail },
             "overrun" => {
                 task.overrun = match value {

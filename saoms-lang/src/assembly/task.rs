@@ -63,9 +63,10 @@ pub struct TaskProperties {
     /// The least time from one reaction to the next.
     #[property(default = "1ms", range = "1us"..="24h")]
     pub minimum: Duration,
-    /// How many messages may wait in each queue of an event topic.
-    #[property(default = 1024, range = 1..=1000000, unit = "messages")]
-    pub queue: usize,
+    /// How many messages may wait in each queue of an event topic. By default 1024, or 16 for each component that uses
+    /// the topic, if that is more.
+    #[property(range = 1..=1000000, unit = "messages")]
+    pub queue: Option<usize>,
     /// What an overflow of such a queue means for the run.
     #[property(default = "fail")]
     pub loss: Loss,
@@ -110,7 +111,18 @@ static DECLARATIONS: LazyLock<Vec<PropertyDeclaration>> = LazyLock::new(|| {
     serde_json::from_str(TaskProperties::DECLARATION).expect("the task properties declare themselves in JSON")
 });
 
+/// Least number of messages that may wait in a queue whose length nobody gave.
+const QUEUE: usize = 1024;
+
+/// Number of messages that may wait in such a queue for each component that uses the topic: several may answer at once.
+const QUEUE_FOR_EACH: usize = 16;
+
 impl TaskProperties {
+    /// How many messages may wait in a queue whose length nobody gave, of a topic that so many components use.
+    pub fn default_queue(users: usize) -> usize {
+        users.saturating_mul(QUEUE_FOR_EACH).max(QUEUE)
+    }
+
     /// The declarations of the task properties, in order.
     pub fn declarations() -> &'static [PropertyDeclaration] {
         &DECLARATIONS

@@ -1,5 +1,6 @@
 //! Fleets in virtual time: what each run has to keep.
 
+mod assignment;
 mod battery;
 mod composites;
 mod endings;

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, info, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, Time, info, record};
 
 use crate::console::JavaList;
 use crate::messages::{EXCEPTIONAL_EVENT, ExceptionalEvent, ROBOT_STATE, RobotState};
@@ -34,6 +34,8 @@ pub struct Workload {
     pub needed: u32,
     /// Robots whose shift is over.
     pub released: u32,
+    /// Pieces that have waited for long, if that is why robots are needed.
+    pub waiting: u32,
 }
 
 /// Robots to wake or to send to charge.
@@ -57,8 +59,15 @@ pub enum AwakeAsleepDecision {
 
 impl Recordable for Workload {
     fn record(&self) -> Record {
-        let Workload { pieces, needed, released } = *self;
+        let Workload { pieces, needed, released, waiting } = *self;
         match (needed, released) {
+            _ if waiting > 0 => record!(
+                luggage_neglected:
+                    "{waiting} {waiting:piece|pieces} of luggage waited for long: needs {needed} \
+                     {needed:robot|robots} more",
+                waiting,
+                needed
+            ),
             (0, _) => {
                 record!(shift_ends: "the shift of {released} {released:robot|robots} ends", released)
             }
@@ -104,9 +113,9 @@ impl Loop for MasterAwakeAsleep {
         knowledge: &mut MasterRobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<Workload>, Failure> {
-        let (released, started) = knowledge.end_shifts();
+        let (ended, started) = knowledge.end_shifts();
         context.because(started);
-        let (mut pieces, mut needed) = (0_u32, 0_u32);
+        let (mut pieces, mut needed, mut waiting) = (0_u32, 0_u32, 0_u32);
         for (header, event) in context.receive(&self.events).with_headers() {
             context.because(header.cause);
             pieces = pieces.saturating_add(event.pieces);
@@ -114,7 +123,32 @@ impl Loop for MasterAwakeAsleep {
             let active = JavaList(knowledge.active());
             context.console(format_args!("MasterRobotManagingSystem updated active robot list: {active}"));
         }
-        Ok((needed > 0 || released > 0).then_some(Workload { pieces, needed, released }))
+        let released = if knowledge.counts_alone() {
+            ended
+        } else {
+            knowledge.due = knowledge.due.saturating_add(ended);
+            knowledge.work.end_period();
+            knowledge.work.announce(pieces, knowledge.counter);
+            let counter = context.period().saturating_mul(knowledge.counter);
+            let before = context.now().as_nanos().checked_sub(u64::try_from(counter.as_nanos()).unwrap_or(u64::MAX));
+            let neglects = before.and_then(|before| knowledge.neglects(Time::from_nanos(before)));
+            match neglects.filter(|_| needed == 0) {
+                Some((neglected, robots, cause)) => {
+                    context.because(cause);
+                    (waiting, needed) = (neglected, robots);
+                    0
+                }
+                // Robots whose shift is over stay for the next one.
+                None if knowledge.due > 0 => {
+                    let released = if needed > 0 { needed } else { knowledge.surplus() };
+                    let released = released.min(knowledge.due);
+                    knowledge.due -= released;
+                    released
+                }
+                None => 0,
+            }
+        };
+        Ok((needed > 0 || released > 0).then_some(Workload { pieces, needed, released, waiting }))
     }
 
     fn plan(

@@ -3,11 +3,13 @@ use std::collections::BTreeMap;
 
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use saoms_api::host::declaration::ConstText;
-use saoms_api::{Cause, Context, Extras, Field, Knowledge, Subscription};
+use saoms_api::{Cause, Context, Extras, Field, Knowledge, Subscription, Time};
 
+use super::work::Work;
 use crate::gone::Gone;
-use crate::messages::{Fault, FaultKind, RobotList};
-use crate::validation::MessageValidator;
+use crate::messages::{EnvironmentEvent, EventLuggage, Fault, FaultKind, RobotList};
+use crate::robot::Policy;
+use crate::validation::{MessageValidator, Validate};
 
 /// Knowledge of the master of the robots: the active robots, and the shifts for which more of them are needed.
 #[derive(Debug, Knowledge)]
@@ -35,6 +37,12 @@ pub struct MasterRobotKnowledge {
     pub(super) called: BTreeMap<u32, bool>,
     /// The shifts, in the order in which they were woken.
     pub shifts: Vec<Shift>,
+    /// Number of robots whose shift is over, and that are awake because there is work for them.
+    pub(super) due: u32,
+    /// Open and announced luggage.
+    pub(super) work: Work,
+    /// Number of active robots of the policy `classic`.
+    classic: u32,
     /// Checks what robots say.
     pub(super) validator: MessageValidator,
     /// Robots that are off the floor.
@@ -85,6 +93,9 @@ impl MasterRobotKnowledge {
             active: ActiveRobots::default(),
             called: BTreeMap::new(),
             shifts: Vec::new(),
+            due: 0,
+            work: Work::default(),
+            classic: 0,
             validator: MessageValidator::default(),
             gone: Gone::default(),
             extras: Extras::default(),
@@ -111,20 +122,46 @@ impl MasterRobotKnowledge {
         }
     }
 
+    /// Handles what is said about luggage.
+    pub(super) fn hear_luggage(
+        &mut self,
+        events: Subscription<EnvironmentEvent>,
+        luggage: Subscription<EventLuggage>,
+        context: &mut Context<'_>,
+    ) {
+        let now = context.now();
+        for (header, event) in context.receive(&events).with_headers() {
+            self.work.hear_events(event, now, header.cause);
+        }
+        for (header, said) in context.receive(&luggage).with_headers() {
+            // Those who act on it report what is wrong.
+            if said.validate(header.sender, &mut self.validator, None).is_ok() {
+                self.work.hear_luggage(said, now, header.cause);
+            }
+        }
+    }
+
     /// Handles a report of a robot about itself.
     pub fn hear(&mut self, robot: &RobotList) {
         let number = robot.robot;
-        if robot.active {
-            self.active.0.insert(number, robot.clone());
-        } else {
-            self.active.0.remove(&number);
+        let before = match robot.active {
+            true => self.active.0.insert(number, robot.clone()),
+            false => self.active.0.remove(&number),
+        };
+        let change = |number: u32, is_one: fn(&RobotList) -> bool| {
+            let now = u32::from(robot.active && is_one(robot));
+            (number + now).saturating_sub(before.as_ref().map_or(0, |before| u32::from(is_one(before))))
+        };
+        self.asleep = change(self.asleep, |robot| robot.asleep);
+        self.classic = change(self.classic, |robot| robot.policy == Policy::Classic);
+        if !robot.active {
+            self.work.forget(number);
         }
         let done = |awake: &bool| !robot.active || *awake != robot.asleep;
         if self.called.get(&number).is_some_and(done) {
             self.called.remove(&number);
         }
         self.robots = count(self.active.0.len());
-        self.asleep = count(self.active.0.values().filter(|robot| robot.asleep).count());
     }
 
     /// The active robots, by number.
@@ -132,18 +169,58 @@ impl MasterRobotKnowledge {
         self.active.0.values()
     }
 
-    /// The robot to wake next: the one with the highest battery level, then the one with the lowest number.
+    /// True if the robots wake and sleep by the counter alone, as the manual's do.
+    pub(super) fn counts_alone(&self) -> bool {
+        self.classic > 0
+    }
+
+    /// The robot to wake next: the one with the highest battery level, less 1 % for each block to the closest luggage
+    /// that waits; then the one with the lowest number.
     pub fn next_to_awake(&self) -> Option<u32> {
-        self.callable(RobotList::can_be_woken).max_by(|one, other| by_right(one, other)).map(|one| one.robot)
+        let far = if self.counts_alone() { |_: &Work, _: &RobotList| 0.0 } else { way_to_work };
+        let right = |one: &RobotList| RobotList { battery: one.battery - far(&self.work, one), ..one.clone() };
+        let sleepers = self.callable(RobotList::can_be_woken).map(right);
+        sleepers.max_by(by_right).map(|one| one.robot)
     }
 
     /// The robot to send to charge next: the one with the lowest battery level, then the one with the highest number.
+    /// While there is other luggage, one that brings some stays, unless the counter alone decides.
     pub fn next_to_charge(&self) -> Option<u32> {
         let works = |robot: &RobotList| !robot.asleep && !robot.in_charge && !robot.is_out_of_battery();
-        self.callable(works).min_by(|one, other| by_right(one, other)).map(|one| one.robot)
+        let has_work = !self.counts_alone() && self.needed_for_work() > 0;
+        let stays = |robot: &&RobotList| has_work && self.work.has_job(robot.robot);
+        let others = self.callable(works).filter(|robot| !stays(robot));
+        others.min_by(|one, other| by_right(one, other)).map(|one| one.robot)
     }
 
-    fn callable(&self, which: fn(&RobotList) -> bool) -> impl Iterator<Item = &RobotList> {
+    /// Number of pieces that wait or are announced.
+    fn needed_for_work(&self) -> u32 {
+        self.work.waiting().saturating_add(self.work.expected())
+    }
+
+    /// Number of robots that may be sent to charge: all that are awake, as long as no luggage waits or is announced, or
+    /// those that are free beyond that luggage.
+    pub(super) fn surplus(&self) -> u32 {
+        let needed = self.needed_for_work();
+        let awake = self.callable(|robot| !robot.asleep);
+        let free = awake.filter(|robot| needed == 0 || !self.work.has_job(robot.robot)).count();
+        count(free).saturating_sub(needed)
+    }
+
+    /// Number of robots that luggage needs that nobody has taken for the time of the counter, beyond those that are
+    /// awake and free or on their way, and the cause of the oldest piece.
+    pub(super) fn neglects(&self, before: Time) -> Option<(u32, u32, Cause)> {
+        let (pieces, cause) = self.work.neglected(before)?;
+        let comes = |robot: &&RobotList| {
+            let is_woken = self.called.get(&robot.robot) == Some(&true);
+            is_woken || !robot.asleep && !self.work.has_job(robot.robot)
+        };
+        let needed = pieces.div_ceil(self.pieces_per_robot).saturating_sub(count(self.active().filter(comes).count()));
+        let needed = needed.min(count(self.callable(RobotList::can_be_woken).count()));
+        (needed > 0).then_some((pieces, needed, cause))
+    }
+
+    fn callable(&self, which: impl Fn(&RobotList) -> bool) -> impl Iterator<Item = &RobotList> {
         self.active().filter(move |robot| which(robot) && !self.called.contains_key(&robot.robot))
     }
 
@@ -183,6 +260,10 @@ impl MasterRobotKnowledge {
 /// Order in which robots are woken: highest battery level first, then lowest number.
 fn by_right(one: &RobotList, other: &RobotList) -> Ordering {
     one.battery.total_cmp(&other.battery).then(other.robot.cmp(&one.robot))
+}
+
+fn way_to_work(work: &Work, robot: &RobotList) -> f64 {
+    f64::from(work.distance(robot.charger))
 }
 
 fn count(robots: usize) -> u32 {

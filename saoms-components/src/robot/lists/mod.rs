@@ -18,7 +18,7 @@ pub(super) use memory::ListsMemory;
 
 pub use helps::{Help, Helps};
 pub use peers::Peers;
-pub use requests::{Request, Requests, Rival};
+pub use requests::{Assigned, Request, Requests, Rival};
 pub use shown::WaitingLuggage;
 
 /// The lists of a robot.
@@ -45,7 +45,12 @@ pub struct Lists {
     pub lost: Vec<u32>,
     /// Robots that are off the floor.
     pub(crate) gone: Gone,
+    /// Longest period of the other robots, in microseconds.
+    slowest_period: u64,
 }
+
+/// Greatest number of blocks of chargers that a robot remembers on a large map.
+const MOST_PLACES: usize = 256;
 
 impl Lists {
     /// Empty lists of the robot with this number.
@@ -60,12 +65,21 @@ impl Lists {
             charging_places: Vec::new(),
             lost: Vec::new(),
             gone: Gone::default(),
+            slowest_period: 0,
         }
     }
 
     /// Longest period of the other robots, in microseconds.
     pub fn slowest_period(&self) -> u64 {
-        self.active.iter().map(|robot| robot.period).max().unwrap_or(0)
+        self.slowest_period
+    }
+
+    fn note_period(&mut self, before: u64, now: u64) {
+        if now < before && before == self.slowest_period {
+            self.slowest_period = self.active.iter().map(|robot| robot.period).max().unwrap_or(0);
+        } else {
+            self.slowest_period = self.slowest_period.max(now);
+        }
     }
 
     /// True if the other robot is active.
@@ -95,8 +109,28 @@ impl Lists {
         self.helps.hear_robot(&RobotList { robot, active: false, ..RobotList::default() });
         self.requests.forget(robot);
         self.peers.forget(robot);
-        self.active.retain(|known| known.robot != robot);
+        self.end(robot);
         self.lost.retain(|lost| *lost != robot);
+    }
+
+    /// Forgets a robot that is out of earshot, but for the block of its charger, where this one can charge.
+    pub(super) fn lose(&mut self, robot: u32) {
+        self.end(robot);
+        self.lost.retain(|lost| *lost != robot);
+        if let Ok(place) = self.chargers.binary_search_by_key(&robot, |(known, _)| *known) {
+            self.chargers.remove(place);
+        }
+        if self.charging_places.len() > MOST_PLACES {
+            self.charging_places.remove(0);
+        }
+    }
+
+    /// Takes a robot off the active ones.
+    fn end(&mut self, robot: u32) -> bool {
+        let Ok(place) = self.active.binary_search_by_key(&robot, |known| known.robot) else { return false };
+        let ended = self.active.remove(place);
+        self.note_period(ended.period, 0);
+        true
     }
 
     /// Handles the state of a robot.
@@ -117,14 +151,19 @@ impl Lists {
                 self.learn_charger(robot.charger);
             }
         }
-        match (self.active.binary_search_by_key(&robot.robot, |known| known.robot), robot.active) {
-            (Ok(place), true) => self.active[place].clone_from(robot),
-            (Err(place), true) => self.active.insert(place, robot.clone()),
-            (Ok(place), false) => {
-                self.active.remove(place);
+        if !robot.active {
+            if self.end(robot.robot) {
                 self.requests.forget(robot.robot);
             }
-            (Err(_), false) => {}
+            return;
         }
+        let before = match self.active.binary_search_by_key(&robot.robot, |known| known.robot) {
+            Ok(place) => std::mem::replace(&mut self.active[place], robot.clone()).period,
+            Err(place) => {
+                self.active.insert(place, robot.clone());
+                0
+            }
+        };
+        self.note_period(before, robot.period);
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use saoms_api::{Cause, Field, Header, Time};
 
 use crate::grid::Block;
-use crate::messages::{EventLuggage, LuggageStage, Visit, is_visit};
+use crate::messages::{Assignment, EventLuggage, LuggageStage, Visit, is_visit};
 use crate::robot::Job;
 use crate::state::Numbers;
 
@@ -90,6 +90,22 @@ pub struct Requests {
     visits: BTreeMap<u32, Visit>,
     /// Luggage that a robot took, brought or gave up: a request that only repeats an earlier one does not count.
     settled: Numbers,
+    /// Luggage that a master assigned to this robot, or took back, which the robot has not answered yet.
+    assigned: Vec<Assigned>,
+}
+
+/// Greatest number of assignments that wait for an answer: a robot without a loop that answers keeps the newest.
+const MOST_ASSIGNED: usize = 8;
+
+/// Luggage that a master assigned to the robot, or took back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
+pub struct Assigned {
+    /// The job.
+    pub job: Job,
+    /// True if it is for another robot now.
+    pub withdrawn: bool,
+    /// Cause of the assignment.
+    pub cause: Cause,
 }
 
 /// The list, for a robot that goes on.
@@ -101,6 +117,7 @@ pub(in crate::robot) struct RequestsMemory {
     refusals: Vec<Refusal>,
     visits: Vec<Visit>,
     settled: Numbers,
+    assigned: Vec<Assigned>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -118,6 +135,7 @@ impl Requests {
             refusals: self.refusals.iter().map(|&(luggage, robot)| Refusal { luggage, robot }).collect(),
             visits: self.visits.values().cloned().collect(),
             settled: self.settled.clone(),
+            assigned: self.assigned.clone(),
         }
     }
 
@@ -125,7 +143,7 @@ impl Requests {
         (self.open, self.claimed, self.refused) = (memory.open, memory.claimed, memory.refused);
         self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
         self.visits = memory.visits.into_iter().map(|visit| (visit.visit, visit)).collect();
-        self.settled = memory.settled;
+        (self.settled, self.assigned) = (memory.settled, memory.assigned);
     }
 
     /// An empty list, for the robot with this number.
@@ -138,6 +156,7 @@ impl Requests {
             refusals: BTreeSet::new(),
             visits: BTreeMap::new(),
             settled: Numbers::default(),
+            assigned: Vec::new(),
         }
     }
 
@@ -154,6 +173,33 @@ impl Requests {
         if !self.settled.contains(visit.visit) {
             self.visits.insert(visit.visit, visit.clone());
         }
+    }
+
+    /// Handles what a master assigned to this robot.
+    pub fn hear_assignment(&mut self, assignment: &Assignment, cause: Cause) {
+        let Assignment { luggage, from, to, withdrawn, .. } = *assignment;
+        self.assigned.retain(|known| known.job.luggage != luggage);
+        if self.assigned.len() >= MOST_ASSIGNED {
+            self.assigned.remove(0);
+        }
+        self.assigned.push(Assigned { job: Job { luggage, from, to }, withdrawn, cause });
+    }
+
+    /// The oldest assignment that the robot has not answered.
+    pub fn assigned(&self) -> Option<&Assigned> {
+        self.assigned.first()
+    }
+
+    /// Ends the oldest assignment: the robot has answered it.
+    pub fn answer_assignment(&mut self) -> Option<Assigned> {
+        (!self.assigned.is_empty()).then(|| self.assigned.remove(0))
+    }
+
+    /// Takes luggage off the list: this robot brings it.
+    pub fn take(&mut self, luggage: u32) {
+        self.settled.insert(luggage);
+        self.open.retain(|open| open.job.luggage != luggage);
+        self.claimed.take_if(|claimed| claimed.job.luggage == luggage);
     }
 
     /// Handles a request or a response. Of the robot's own responses those count that end its interest for good:
@@ -175,7 +221,10 @@ impl Requests {
         match event.stage {
             LuggageStage::Refused => _ = self.refusals.insert((event.luggage, event.robot)),
             LuggageStage::Delivered | LuggageStage::GivenUp => {
-                self.refusals.retain(|(luggage, _)| *luggage != event.luggage);
+                let of_luggage = (event.luggage, 0)..=(event.luggage, u32::MAX);
+                for refusal in self.refusals.range(of_luggage).copied().collect::<Vec<_>>() {
+                    self.refusals.remove(&refusal);
+                }
             }
             _ => {}
         }
@@ -236,6 +285,11 @@ impl Requests {
         for request in self.open.iter_mut().chain(&mut self.claimed) {
             request.rivals.retain(|rival| rival.robot != robot);
         }
+    }
+
+    /// Keeps the open requests of a part of the map, for a robot that hears no more of the others.
+    pub(in crate::robot) fn keep(&mut self, is_near: impl Fn(Block) -> bool) {
+        self.open.retain(|request| is_near(request.job.from));
     }
 
     /// Removes requests that other robots took an interest in.

@@ -54,7 +54,7 @@ impl RobotKnowledge {
             (Some(self.charge_block), Urgency::Energy)
         } else if let Some(destination) = self.destination() {
             (Some(destination), Urgency::Job)
-        } else if self.variables.transporter || self.offers_help {
+        } else if self.variables.transporter || self.offers_help || self.lingers > 0 {
             (None, Urgency::None)
         } else {
             (Some(self.charge_block), Urgency::Home)

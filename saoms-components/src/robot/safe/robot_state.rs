@@ -71,6 +71,11 @@ pub enum SafeRobotSymptom {
         /// Number of the luggage.
         luggage: u32,
     },
+    /// A master assigned luggage to this robot.
+    Assigned {
+        /// Number of the luggage.
+        luggage: u32,
+    },
     /// The robot was sent to sleep, and is at its charger.
     AtRest,
 }
@@ -110,6 +115,9 @@ impl Recordable for SafeRobotSymptom {
                     no_awake_robot_can_carry: "luggage {luggage} waits, and no robot that is awake can carry it",
                     luggage
                 )
+            }
+            SafeRobotSymptom::Assigned { luggage } => {
+                record!(assigned_while_asleep: "is to carry luggage {luggage}, and sleeps", luggage)
             }
             SafeRobotSymptom::AtRest => record!(at_charger_to_sleep: "is at its charger, and was sent to sleep"),
         }
@@ -175,6 +183,10 @@ impl Loop for SafeRobotState {
                 context.because(cause);
                 return Ok(Some(SafeRobotSymptom::NobodyAwake { critical }));
             }
+            if let Some(assigned) = knowledge.lists.requests.assigned().filter(|assigned| !assigned.withdrawn) {
+                context.because(assigned.cause);
+                return Ok(Some(SafeRobotSymptom::Assigned { luggage: assigned.job.luggage }));
+            }
             return Ok(knowledge.has_to_bring(context).map(|(luggage, cause)| {
                 context.because(cause);
                 SafeRobotSymptom::NobodyForLuggage { luggage }
@@ -198,7 +210,9 @@ impl Loop for SafeRobotState {
             }
             SafeRobotSymptom::Woken { .. } => Some(SafeRobotDecision::StayAwake),
             SafeRobotSymptom::NobodyAwake { critical } => Some(SafeRobotDecision::Awake { emulate: critical }),
-            SafeRobotSymptom::NobodyForLuggage { .. } => Some(SafeRobotDecision::Awake { emulate: 0 }),
+            SafeRobotSymptom::NobodyForLuggage { .. } | SafeRobotSymptom::Assigned { .. } => {
+                Some(SafeRobotDecision::Awake { emulate: 0 })
+            }
             SafeRobotSymptom::SentToSleep => (!asleep).then_some(SafeRobotDecision::Finish),
             SafeRobotSymptom::AtRest => Some(SafeRobotDecision::Sleep),
         })

@@ -284,7 +284,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure> {
-        let queue = self.spec().task.as_ref().map_or(1, |task| task.queue);
+        let queue = self.spec().task.as_ref().map_or(Some(1), |task| task.queue);
         let Some(reader) = self.part.subscriptions.get(subscription as usize) else {
             return Err(Failure::new("this subscription belongs to no topic: keep what `Context::subscribe` returned"));
         };

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use saoms_api::host::{TopicKind, format_duration};
 
-use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic, on_bus};
+use crate::assembly::{Assembly, Loss, TaskProperties, TopicEnd, Traffic, TrafficTopic, on_bus};
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Member};
 use crate::check::properties::findings::Renamed;
@@ -234,9 +234,10 @@ impl All<'_> {
         // fleet of robots says the same.
         let mut alike: HashMap<Duration, Vec<TopicEnd>> = HashMap::new();
         let mut queues: HashMap<(Duration, usize), Vec<TopicEnd>> = HashMap::new();
+        let default = TaskProperties::default_queue(topic.writers.len() + topic.readers.len());
         let losing = |reader: &TopicEnd| {
             let task = self.assembly.components[reader.component].task.as_ref()?;
-            (topic.kind == TopicKind::Event && task.loss == Loss::Fail).then_some(task.queue)
+            (topic.kind == TopicKind::Event && task.loss == Loss::Fail).then(|| task.queue.unwrap_or(default))
         };
         for reader in &topic.readers {
             let Some(period) = reader.period else { continue };

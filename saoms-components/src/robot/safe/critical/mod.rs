@@ -334,8 +334,7 @@ impl SafeCriticalSituation {
         knowledge.lists.helps.settle();
         knowledge.end_offer(self.was_healer);
         if let Some(job) = situation.job() {
-            knowledge.job = Some(job);
-            knowledge.visits = false;
+            (knowledge.job, knowledge.visits, knowledge.is_assigned) = (Some(job), false, false);
             (knowledge.variables.busy, knowledge.variables.healer) = (true, true);
             knowledge.set_out(&job);
             let luggage = job.luggage;

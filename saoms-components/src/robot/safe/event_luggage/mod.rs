@@ -1,5 +1,6 @@
 //! Distribution of luggage among the robots.
 
+mod assigned;
 mod records;
 
 use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publisher, Saved, Work, info};
@@ -11,6 +12,8 @@ use crate::robot::{ASSISTANCE, Job, JobEnd, Request, RobotKnowledge};
 
 use super::energy::Feasibility;
 use super::patience::{Attempt, Idle};
+
+use assigned::{decide_about_assigned, look_at_assignment};
 
 pub(super) use records::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
 
@@ -85,6 +88,10 @@ impl Loop for SafeEventLuggage {
             return Ok(Some(SafeLuggageSymptom::TooFar { job, to, carries }));
         }
         let in_vain = self.look_at_idleness(knowledge, context);
+        if let Some((symptom, cause)) = look_at_assignment(knowledge) {
+            context.because(cause);
+            return Ok(Some(symptom));
+        }
         if knowledge.hardware.running().is_none()
             && let Some(symptom) = self.look_at_time(knowledge)
         {
@@ -135,6 +142,10 @@ impl Loop for SafeEventLuggage {
                     SafeLuggageDecision::Refuse { job, why }
                 }
             },
+            SafeLuggageSymptom::Assigned { job, is_free: false } | SafeLuggageSymptom::Withdrawn(job) => {
+                SafeLuggageDecision::HandBack(job)
+            }
+            SafeLuggageSymptom::Assigned { job, is_free: true } => decide_about_assigned(job, knowledge),
             SafeLuggageSymptom::InVain(job) => SafeLuggageDecision::Refuse { job, why: Hindrance::Others },
             SafeLuggageSymptom::Alone(job) => SafeLuggageDecision::Take(job),
             SafeLuggageSymptom::Beaten { job, .. } => SafeLuggageDecision::Release(job),
@@ -176,16 +187,25 @@ impl Loop for SafeEventLuggage {
             }
             SafeLuggageDecision::Take(job) | SafeLuggageDecision::Visit { job, .. } => {
                 knowledge.lists.requests.settle();
+                if let Some(left) = knowledge.job {
+                    let left = left.response(knowledge.number, knowledge.block, LuggageStage::Release);
+                    context.send(&self.luggage, left)?;
+                }
                 knowledge.stops = knowledge.lists.requests.stops(job.luggage).to_vec();
                 knowledge.visits = !knowledge.stops.is_empty();
-                (knowledge.variables.busy, knowledge.variables.transporter) = (true, true);
-                knowledge.job = Some(job);
+                knowledge.take(job);
                 knowledge.set_out(&job);
                 match knowledge.visits {
                     true => info!(context, "goes to {} for visit {}", job.from, job.luggage - FIRST_VISIT),
                     false => info!(context, "takes luggage {} from {} to {}", job.luggage, job.from, job.to),
                 }
                 (job, LuggageStage::Taken)
+            }
+            SafeLuggageDecision::HandBack(job) => {
+                if knowledge.job.is_some_and(|own| own.luggage == job.luggage) {
+                    knowledge.drop_job();
+                }
+                (job, LuggageStage::Release)
             }
             SafeLuggageDecision::Release(job) => {
                 knowledge.variables.transporter = false;

@@ -27,6 +27,15 @@ pub enum SafeLuggageSymptom {
     },
     /// Another robot took the luggage that this one was interested in.
     Gone,
+    /// A master assigned luggage to this robot.
+    Assigned {
+        /// The job.
+        job: Job,
+        /// True if this robot can take a job now.
+        is_free: bool,
+    },
+    /// A master assigned the luggage of this robot to another one. It is not collected yet.
+    Withdrawn(Job),
     /// No way leads to the robot's goal any more.
     CutOff {
         /// The job.
@@ -97,6 +106,8 @@ pub enum SafeLuggageDecision {
     Forget,
     /// Leave luggage that is not collected yet to other robots.
     Return(Job),
+    /// Leave luggage to the master that assigned it, and end the job if it is the robot's.
+    HandBack(Job),
     /// Give up luggage that the robot carries.
     GiveUp {
         /// The job.
@@ -149,6 +160,15 @@ impl Recordable for SafeLuggageSymptom {
                     has_to_charge_despite_luggage: "has to charge, but has offered to carry luggage {luggage}",
                     luggage
                 )
+            }
+            SafeLuggageSymptom::Assigned { job: Job { luggage, from, .. }, is_free: true } => {
+                record!(luggage_assigned: "is to carry luggage {luggage} from {from}", luggage, from)
+            }
+            SafeLuggageSymptom::Assigned { job: Job { luggage, .. }, is_free: false } => {
+                record!(luggage_assigned_in_vain: "is to carry luggage {luggage}, but takes no job now", luggage)
+            }
+            SafeLuggageSymptom::Withdrawn(Job { luggage, .. }) => {
+                record!(luggage_withdrawn: "luggage {luggage} is for another robot now", luggage)
             }
             SafeLuggageSymptom::Gone => record!(luggage_taken: "another robot takes the luggage"),
             SafeLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
@@ -207,6 +227,9 @@ impl Recordable for SafeLuggageDecision {
             }
             SafeLuggageDecision::Release(Job { luggage, .. }) => {
                 record!(withdraws_offer_for_luggage: "withdraws its offer to carry luggage {luggage}", luggage)
+            }
+            SafeLuggageDecision::HandBack(Job { luggage, .. }) => {
+                record!(hands_luggage_back: "leaves luggage {luggage} to the master", luggage)
             }
             SafeLuggageDecision::Forget => record!(looks_for_other_luggage: "looks for other luggage"),
             SafeLuggageDecision::Return(Job { luggage, .. }) => {

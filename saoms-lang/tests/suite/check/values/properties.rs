@@ -215,7 +215,7 @@ fn values_out_of_range_or_not_allowed() {
         8:31-32 error S3008: property `restartLimit`: `0` is out of range: expected a whole number from 1 to 1000000
           help: `restartLimit`: How many restarts there may be in a run; the default is `5`
         9:24-65 error S3008: property `queue`: `99999999999999999999999999999999999999999` is out of range: expected a whole number from 1 to 1000000 [messages]
-          help: `queue`: How many messages may wait in each queue of an event topic; the default is `1024`
+          help: `queue`: How many messages may wait in each queue of an event topic. By default 1024, or 16 for each component that uses the topic, if that is more
         10:23-27 error S3009: property `loss`: `true` is not allowed: expected `fail` or `accept`
           help: `loss`: What an overflow of such a queue means for the run; the default is `fail`
     "#]].assert_eq(&faults(&robot(

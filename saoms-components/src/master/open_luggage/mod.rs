@@ -1,3 +1,6 @@
+#[cfg(test)]
+mod tests;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
@@ -10,7 +13,7 @@ use crate::robot::Job;
 
 /// Open luggage, and the robots that could bring it.
 #[derive(Debug, Default)]
-pub(super) struct OpenLuggage {
+pub struct OpenLuggage {
     pieces: BTreeMap<u32, Piece>,
     /// Requests for help with a job that no robot has answered, by luggage.
     helps: BTreeMap<u32, CriticalSituation>,
@@ -30,6 +33,8 @@ pub(super) struct OpenLuggage {
     seen: bool,
     /// True if something changed since the last check.
     changed: bool,
+    /// Luggage that waits and that no robot was asked to bring, oldest first.
+    waiting: BTreeSet<(Time, u32)>,
 }
 
 #[derive(Debug, Default)]
@@ -46,6 +51,12 @@ struct Piece {
     stops: Vec<Block>,
     /// The only robot that may do it.
     only: Option<u32>,
+    /// Time of its request.
+    since: Time,
+    /// The robot to which it is assigned, until that one answers.
+    asked: Option<u32>,
+    /// Time until which robots may decide by themselves who takes it: one of them is interested.
+    discussed: Time,
 }
 
 impl Piece {
@@ -64,6 +75,17 @@ impl Piece {
     fn is_for(&self, robot: u32) -> bool {
         self.only.is_none_or(|only| only == robot) && !self.refused.contains(&robot)
     }
+}
+
+/// Luggage that waits and that no robot was asked to bring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+pub struct WaitingPiece {
+    /// The job.
+    pub job: Job,
+    /// Time of the request.
+    pub since: Time,
+    /// Number of the only robot that may do it, if it is a visit for one alone.
+    pub only: Option<u32>,
 }
 
 /// Open luggage, for a master that goes on.
@@ -91,6 +113,7 @@ struct PieceMemory {
     taken: Option<u32>,
     stops: Vec<Block>,
     only: Option<u32>,
+    since: Time,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -133,7 +156,7 @@ impl OpenLuggage {
     /// The state for a master that goes on.
     pub(super) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused, waits, taken, stops, only } = piece;
+            let Piece { from, to, refused, waits, taken, stops, only, since, .. } = piece;
             let (refused, stops) = (refused.iter().copied().collect(), stops.clone());
             PieceMemory {
                 luggage: *luggage,
@@ -144,6 +167,7 @@ impl OpenLuggage {
                 taken: *taken,
                 stops,
                 only: *only,
+                since: *since,
             }
         };
         // Periods came as whole microseconds.
@@ -169,9 +193,12 @@ impl OpenLuggage {
     /// The state of a master that goes on.
     pub(super) fn of(memory: OpenMemory) -> OpenLuggage {
         let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, refused, waits, taken, stops, only } = piece;
-            (luggage, Piece { from, to, refused: refused.into_iter().collect(), waits, taken, stops, only })
+            let PieceMemory { luggage, from, to, refused, waits, taken, stops, only, since } = piece;
+            let refused = refused.into_iter().collect();
+            (luggage, Piece { from, to, refused, waits, taken, stops, only, since, asked: None, discussed: since })
         };
+        let waiting = memory.pieces.iter().filter(|piece| piece.waits).map(|piece| (piece.since, piece.luggage));
+        let waiting = waiting.collect();
         let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
         OpenLuggage {
             pieces: memory.pieces.into_iter().map(piece).collect(),
@@ -184,24 +211,98 @@ impl OpenLuggage {
             left_visits: memory.left_visits,
             seen: memory.seen,
             changed: memory.changed,
+            waiting,
         }
     }
 
-    pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
-        self.pieces.insert(luggage, Piece { from, to, waits: true, ..Piece::default() });
-        self.changed = true;
+    pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block, since: Time) {
+        self.put(luggage, Piece { from, to, since, ..Piece::default() });
     }
 
-    pub(super) fn add_visit(&mut self, visit: &Visit) {
+    pub(super) fn add_visit(&mut self, visit: &Visit, since: Time) {
         let ([from, to], stops) = (visit.ends(), visit.stops.clone());
         let only = Some(visit.robot).filter(|robot| *robot != 0);
-        self.pieces.insert(visit.visit, Piece { from, to, stops, only, waits: true, ..Piece::default() });
+        self.put(visit.visit, Piece { from, to, stops, only, since, ..Piece::default() });
+    }
+
+    fn put(&mut self, luggage: u32, piece: Piece) {
+        let since = piece.since;
+        self.pieces.insert(luggage, Piece { waits: true, discussed: since, ..piece });
+        self.waiting.insert((since, luggage));
         self.changed = true;
     }
 
     /// The visit of this number.
     pub(super) fn visit(&self, number: u32) -> Option<Visit> {
         self.pieces.get(&number)?.visit(number)
+    }
+
+    /// Luggage that waits and that no robot was asked to bring, oldest first.
+    pub(super) fn waiting(&self) -> impl Iterator<Item = WaitingPiece> {
+        self.waiting.iter().filter_map(|(since, luggage)| {
+            let piece = self.pieces.get(luggage)?;
+            let job = Job { luggage: *luggage, from: piece.from, to: piece.to };
+            Some(WaitingPiece { job, since: *since, only: piece.only })
+        })
+    }
+
+    /// True if no luggage waits.
+    pub(super) fn is_nothing_waiting(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// The job of a piece that is open.
+    pub(super) fn job(&self, luggage: u32) -> Option<WaitingPiece> {
+        let piece = self.pieces.get(&luggage)?;
+        let job = Job { luggage, from: piece.from, to: piece.to };
+        Some(WaitingPiece { job, since: piece.since, only: piece.only })
+    }
+
+    /// True if a robot refused the luggage for good, or it is for another one alone.
+    pub(super) fn is_refused(&self, luggage: u32, robot: u32) -> bool {
+        self.pieces.get(&luggage).is_none_or(|piece| !piece.is_for(robot))
+    }
+
+    /// True if robots decide by themselves at present who takes the luggage.
+    pub(super) fn is_discussed(&self, luggage: u32, now: Time) -> bool {
+        self.pieces.get(&luggage).is_some_and(|piece| piece.discussed > now)
+    }
+
+    /// A robot is interested in luggage, and decides until this time.
+    pub(super) fn discuss(&mut self, luggage: u32, until: Time) {
+        if let Some(piece) = self.pieces.get_mut(&luggage) {
+            piece.discussed = until;
+        }
+    }
+
+    /// Luggage is assigned to a robot.
+    pub(super) fn ask(&mut self, luggage: u32, robot: u32) {
+        if let Some(piece) = self.pieces.get_mut(&luggage) {
+            piece.asked = Some(robot);
+            self.waiting.remove(&(piece.since, luggage));
+        }
+    }
+
+    /// The robot does not bring the luggage that was assigned to it.
+    pub(super) fn hand_back(&mut self, luggage: u32, robot: u32) {
+        if let Some(piece) = self.pieces.get_mut(&luggage)
+            && (piece.asked == Some(robot) || piece.taken == Some(robot))
+        {
+            (piece.asked, piece.taken, piece.waits) = (None, None, true);
+            self.waiting.insert((piece.since, luggage));
+        }
+    }
+
+    /// The robot that brings luggage, or that is to.
+    pub(super) fn bearer(&self, luggage: u32) -> Option<u32> {
+        self.pieces.get(&luggage).and_then(|piece| piece.taken.or(piece.asked))
+    }
+
+    fn remove(&mut self, luggage: u32) {
+        if let Some(piece) = self.pieces.remove(&luggage) {
+            self.waiting.remove(&(piece.since, luggage));
+        }
+        self.helps.remove(&luggage);
     }
 
     /// The lowest number of open luggage, and the number of other pieces.
@@ -226,15 +327,22 @@ impl OpenLuggage {
     /// The world says what a robot left.
     pub(super) fn hear_removal(&mut self, removal: &Removal) {
         self.left.insert(removal.robot, removal.clone());
-        for luggage in &removal.delivered {
-            self.pieces.remove(luggage);
-            self.helps.remove(luggage);
-        }
+        removal.delivered.iter().for_each(|luggage| self.remove(*luggage));
     }
 
     /// Robots that are off the floor.
     pub(super) fn gone(&self) -> impl Iterator<Item = u32> {
         self.gone.robots()
+    }
+
+    /// True if a robot is off the floor.
+    pub(super) fn is_gone(&self, robot: u32) -> bool {
+        self.gone.contains(robot)
+    }
+
+    /// The robots that bring luggage, with its number.
+    pub(super) fn jobs(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.pieces.iter().filter_map(|(luggage, piece)| Some((piece.taken?, *luggage)))
     }
 
     /// Opens the luggage of robots that are off the floor again: what they carried lies where the world says, and all
@@ -251,6 +359,7 @@ impl OpenLuggage {
                     piece.from = left.block;
                 }
                 (piece.waits, piece.taken) = (true, None);
+                self.waiting.insert((piece.since, *luggage));
                 again.push((robot, piece.request(*luggage)));
             }
         }
@@ -286,7 +395,8 @@ impl OpenLuggage {
         match situation.stage {
             CriticalStage::Request => {
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
-                    piece.taken = None;
+                    (piece.taken, piece.asked) = (None, None);
+                    self.waiting.remove(&(piece.since, luggage));
                     self.helps.insert(luggage, situation.clone());
                 }
             }
@@ -294,7 +404,8 @@ impl OpenLuggage {
                 self.helps.remove(&luggage);
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
                     // For who takes it away from the healer, it lies where the broken robot left it.
-                    (piece.from, piece.taken) = (from, Some(situation.healer));
+                    (piece.from, piece.taken, piece.asked) = (from, Some(situation.healer), None);
+                    self.waiting.remove(&(piece.since, luggage));
                 }
             }
             CriticalStage::Intention | CriticalStage::Release | CriticalStage::StandsIn => {}
@@ -313,13 +424,15 @@ impl OpenLuggage {
     pub(super) fn hear_response(&mut self, response: &EventLuggage) {
         match response.stage {
             LuggageStage::Delivered | LuggageStage::GivenUp => {
-                self.pieces.remove(&response.luggage);
-                self.helps.remove(&response.luggage);
+                self.remove(response.luggage);
             }
             LuggageStage::Request | LuggageStage::Taken => {
                 if let Some(piece) = self.pieces.get_mut(&response.luggage) {
                     piece.waits = response.stage == LuggageStage::Request;
                     piece.taken = (!piece.waits).then_some(response.robot);
+                    piece.asked = None;
+                    let key = (piece.since, response.luggage);
+                    if piece.waits { _ = self.waiting.insert(key) } else { _ = self.waiting.remove(&key) }
                 }
             }
             LuggageStage::Refused => {
@@ -327,10 +440,13 @@ impl OpenLuggage {
                     self.changed |= piece.refused.insert(response.robot);
                     if !piece.stops.is_empty() && piece.taken == Some(response.robot) {
                         self.left_visits.push(response.luggage);
+                    } else {
+                        self.hand_back(response.luggage, response.robot);
                     }
                 }
             }
-            LuggageStage::Interest | LuggageStage::Release => {}
+            LuggageStage::Release => self.hand_back(response.luggage, response.robot),
+            LuggageStage::Interest => {}
         }
     }
 
@@ -340,6 +456,7 @@ impl OpenLuggage {
         let again = left.into_iter().filter_map(|luggage| {
             let piece = self.pieces.get_mut(&luggage).filter(|piece| piece.taken.is_some() && piece.only.is_none())?;
             (piece.waits, piece.taken) = (true, None);
+            self.waiting.insert((piece.since, luggage));
             Some(piece.request(luggage))
         });
         again.collect()
@@ -354,153 +471,16 @@ impl OpenLuggage {
         if !std::mem::take(&mut self.changed) || !self.seen {
             return Vec::new();
         }
-        let OpenLuggage { pieces, helps, active, broken, .. } = self;
+        let OpenLuggage { pieces, helps, active, broken, waiting, .. } = self;
         let can =
             |piece: &Piece| active.keys().filter(|robot| !broken.contains(robot)).any(|robot| piece.is_for(*robot));
         let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
-        let hopeless: Vec<_> = hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect();
+        let hopeless = hopeless.map(|(luggage, piece)| {
+            waiting.remove(&(piece.since, luggage));
+            (luggage, piece.from, piece.to)
+        });
+        let hopeless: Vec<_> = hopeless.collect();
         hopeless.iter().for_each(|(luggage, ..)| _ = helps.remove(luggage));
         hopeless
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use saoms_api::Cause;
-
-    use super::*;
-
-    fn robot(robot: u32, active: bool) -> RobotList {
-        RobotList { robot, active, ..RobotList::default() }
-    }
-
-    fn heard(millis: u64) -> Header {
-        Header { sender: 0, sent: at(millis), cause: Cause::default() }
-    }
-
-    fn at(millis: u64) -> Time {
-        Time::START + Duration::from_millis(millis)
-    }
-
-    fn refusal(luggage: u32, robot: u32) -> EventLuggage {
-        EventLuggage { luggage, robot, stage: LuggageStage::Refused, ..EventLuggage::default() }
-    }
-
-    fn hopeless(open: &mut OpenLuggage) -> Vec<u32> {
-        hopeless_at(open, 0)
-    }
-
-    fn hopeless_at(open: &mut OpenLuggage, millis: u64) -> Vec<u32> {
-        open.take_hopeless(at(millis)).into_iter().map(|(luggage, ..)| luggage).collect()
-    }
-
-    #[test]
-    fn luggage_is_given_up_once_every_robot_refused_it() {
-        let mut open = OpenLuggage::default();
-        for luggage in 1..=3 {
-            open.add(luggage, Block::new(0, 0), Block::new(1, 0));
-        }
-        assert_eq!(hopeless(&mut open), [0; 0], "no robot was there yet");
-        open.hear_robot(&robot(1, true), heard(0));
-        open.hear_robot(&robot(2, true), heard(0));
-        open.hear_response(&refusal(2, 1));
-        assert_eq!(hopeless(&mut open), [0; 0]);
-        open.hear_response(&refusal(2, 2));
-        assert_eq!(hopeless(&mut open), [2]);
-        open.hear_response(&EventLuggage { stage: LuggageStage::Delivered, luggage: 1, ..refusal(1, 1) });
-        open.hear_response(&refusal(3, 1));
-        open.break_down(2, at(0));
-        assert_eq!(hopeless(&mut open), [3], "the other one is broken down");
-    }
-
-    #[test]
-    fn who_is_told_to_break_can_say_so_first() {
-        let mut open = OpenLuggage::default();
-        for number in [1, 2] {
-            open.hear_robot(&RobotList { period: 500_000, ..robot(number, true) }, heard(0));
-            open.add(number, Block::new(0, 0), Block::new(1, 0));
-            open.break_down(number, at(1000));
-        }
-        assert_eq!(hopeless_at(&mut open, 1900), [0; 0]);
-        open.hear_robot(&robot(2, false), heard(0));
-        assert_eq!(hopeless_at(&mut open, 1950), [0; 0], "the other one may still bring it");
-        assert_eq!(hopeless_at(&mut open, 2000), [1, 2], "it says nothing");
-    }
-
-    #[test]
-    fn a_robot_that_starts_later_gets_what_waits() {
-        let block = |x| Block::new(x, 0);
-        let help = |stage| CriticalSituation { critical: 1, luggage: 2, stage, ..CriticalSituation::default() };
-        let waiting = |open: &OpenLuggage, robot| {
-            let (luggage, helps) = open.waiting_for(robot);
-            let luggage = luggage.iter().map(|request| request.luggage).collect::<Vec<_>>();
-            (luggage, helps.iter().map(|help| help.luggage).collect::<Vec<_>>())
-        };
-        let mut open = OpenLuggage::default();
-        for luggage in 1..=3 {
-            open.add(luggage, block(0), block(1));
-        }
-        assert!(open.hear_robot(&robot(1, true), heard(0)));
-        assert!(!open.hear_robot(&robot(1, true), heard(0)), "it was active before");
-        open.hear_response(&EventLuggage { stage: LuggageStage::Taken, ..refusal(2, 1) });
-        open.hear_response(&refusal(3, 2));
-        assert_eq!(waiting(&open, 2), (vec![1], vec![]));
-        open.hear_situation(&help(CriticalStage::Request));
-        open.hear_robot(&robot(1, false), heard(0));
-        assert!(open.hear_robot(&robot(1, true), heard(0)));
-        assert_eq!(waiting(&open, 1), (vec![1, 3], vec![2]), "a robot that starts again knows nothing");
-        open.hear_situation(&help(CriticalStage::Taken));
-        assert_eq!(waiting(&open, 1), (vec![1, 3], vec![]));
-        open.hear_response(&EventLuggage { stage: LuggageStage::Request, ..refusal(2, 0) });
-        assert_eq!(waiting(&open, 2), (vec![1, 2], vec![]));
-    }
-
-    #[test]
-    fn luggage_is_given_up_once_no_robot_is_left() {
-        let mut open = OpenLuggage::default();
-        open.hear_robot(&robot(1, true), heard(0));
-        open.add(1, Block::new(0, 0), Block::new(1, 0));
-        assert_eq!(hopeless(&mut open), [0; 0]);
-        open.hear_robot(&robot(1, false), heard(0));
-        assert_eq!(hopeless(&mut open), [1]);
-        open.hear_robot(&robot(1, true), heard(0));
-        open.add(2, Block::new(0, 0), Block::new(1, 0));
-        assert_eq!(hopeless(&mut open), [0; 0], "it is back");
-    }
-
-    #[test]
-    fn luggage_of_a_robot_that_is_gone_waits_again_where_it_lies() {
-        let block = |x| Block::new(x, 0);
-        let taken = |luggage| EventLuggage { stage: LuggageStage::Taken, ..refusal(luggage, 1) };
-        let again = |open: &mut OpenLuggage, has_world| {
-            let all = open.open_again(has_world);
-            all.iter().map(|(robot, request)| (*robot, request.luggage, request.from.x)).collect::<Vec<_>>()
-        };
-        let mut open = OpenLuggage::default();
-        open.hear_robot(&robot(1, true), heard(0));
-        open.hear_robot(&robot(2, true), heard(0));
-        for luggage in 1..=4 {
-            open.add(luggage, block(0), block(9));
-        }
-        open.hear_response(&taken(1));
-        open.hear_response(&taken(2));
-        open.hear_response(&EventLuggage { robot: 2, ..taken(3) });
-        let help = CriticalSituation { critical: 1, luggage: 2, ..CriticalSituation::default() };
-        open.hear_situation(&help);
-        open.take_away(1, heard(5));
-        assert_eq!(again(&mut open, true), [], "the world says where it lies");
-        open.hear_removal(&Removal { robot: 1, block: block(4), luggage: vec![1], delivered: Vec::new() });
-        assert_eq!(again(&mut open, true), [(1, 1, 4)], "the broken robot asked for help with the other piece");
-        assert_eq!(again(&mut open, true), []);
-        open.hear_response(&taken(4));
-        assert_eq!(again(&mut open, true), [(1, 4, 0)], "it was on its way to say so");
-        assert_eq!(open.waiting_for(3).0.iter().map(|request| request.from.x).collect::<Vec<_>>(), [4, 0]);
-
-        assert!(!open.hear_robot(&robot(1, true), heard(5)), "it said so before");
-        assert!(open.hear_robot(&robot(1, true), heard(6)), "it is back");
-        open.hear_response(&taken(1));
-        assert_eq!(again(&mut open, true), []);
-        open.take_away(1, heard(9));
-        assert_eq!(again(&mut open, false), [(1, 1, 4)], "nobody else can say where it lies");
     }
 }

@@ -1,0 +1,231 @@
+//! What the master knows of the robots that bring luggage.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use saoms_api::host::cdr::{DecodeError, Reader, Writer};
+use saoms_api::host::declaration::ConstText;
+use saoms_api::{Field, Time};
+
+use crate::grid::Block;
+use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Position, RobotList};
+
+/// Number of periods of the slowest robot for which a robot that took no job is not asked again. It doubles each time,
+/// as often as [`DOUBLED`].
+const REST: u32 = 8;
+const DOUBLED: u32 = 6;
+
+/// Number of periods of the slowest robot within which a robot answers.
+const ANSWER: u32 = 8;
+
+/// A robot, as the master knows it.
+#[derive(Clone, Debug, Default, PartialEq, Field)]
+pub struct Member {
+    /// Number of the robot.
+    pub robot: u32,
+    /// Its last known block.
+    pub block: Block,
+    /// Block of its charger.
+    pub charger: Block,
+    /// Battery level in percent, as it last said.
+    pub battery: f64,
+    /// True if it sleeps.
+    pub asleep: bool,
+    /// Number of the luggage that it brings.
+    pub job: Option<u32>,
+    /// True if it was at the block of that luggage.
+    pub collected: bool,
+    /// Number of the luggage that is assigned to it, until it answers.
+    pub asked: Option<u32>,
+    /// Time until which it is to answer, or until which it is not asked again.
+    pub until: Time,
+    period: u64,
+    moved: Time,
+    /// How often it handed luggage back since it took some.
+    handed_back: u32,
+}
+
+/// The robots that bring luggage, by number. As an entry it is a list of [`Member`].
+#[derive(Debug, Default)]
+pub struct Crew {
+    members: BTreeMap<u32, Member>,
+    /// Robots that are awake and have no job.
+    free: BTreeSet<u32>,
+    /// Robots to which luggage is assigned and that have not answered.
+    asked: BTreeSet<u32>,
+    /// Longest period of the robots, in microseconds.
+    slowest: u64,
+    /// Shortest time from one block to the next that a robot took.
+    step: Option<Duration>,
+    /// True if something changed that makes other assignments possible.
+    pub(in crate::master) changed: bool,
+}
+
+impl Field for Crew {
+    const TYPE: ConstText = <Vec<Member> as Field>::TYPE;
+    const LEAST_SIZE: usize = <Vec<Member> as Field>::LEAST_SIZE;
+
+    fn write(&self, writer: &mut Writer) {
+        let all: Vec<Member> = self.members.values().cloned().collect();
+        all.write(writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        Err(DecodeError::new("the master keeps this list itself, by the messages that it hears", reader.offset()))
+    }
+}
+
+impl Crew {
+    /// Robots that are awake and have no job, and that may be asked, by number.
+    pub(super) fn free(&self, now: Time) -> impl Iterator<Item = &Member> {
+        self.free.iter().filter_map(|robot| self.members.get(robot)).filter(move |member| member.until <= now)
+    }
+
+    /// True if a robot is awake.
+    pub(super) fn is_anybody_awake(&self) -> bool {
+        self.members.values().any(|member| !member.asleep)
+    }
+
+    /// All robots.
+    pub(super) fn members(&self) -> impl Iterator<Item = &Member> {
+        self.members.values()
+    }
+
+    pub(super) fn get(&self, robot: u32) -> Option<&Member> {
+        self.members.get(&robot)
+    }
+
+    /// Longest period of the robots.
+    pub(super) fn slowest(&self) -> Duration {
+        Duration::from_micros(self.slowest)
+    }
+
+    /// Time of a move, as far as it was seen.
+    pub(super) fn step(&self) -> Duration {
+        self.step.unwrap_or_else(|| self.slowest())
+    }
+
+    /// A crew of which only is known who brings what, after a restart of the master.
+    pub(in crate::master) fn with_jobs(jobs: impl Iterator<Item = (u32, u32)>) -> Crew {
+        let member =
+            |(robot, luggage)| (robot, Member { robot, job: Some(luggage), collected: true, ..Member::default() });
+        Crew { members: jobs.map(member).collect(), ..Crew::default() }
+    }
+
+    /// Handles the state of a robot.
+    pub(in crate::master) fn hear_robot(&mut self, said: &RobotList) {
+        if !said.active {
+            return self.remove(said.robot);
+        }
+        let member = self.members.entry(said.robot).or_insert_with(|| {
+            self.changed = true;
+            Member { robot: said.robot, block: said.block, ..Member::default() }
+        });
+        self.changed |= member.asleep != said.asleep;
+        (member.charger, member.battery, member.asleep, member.period) =
+            (said.charger, said.battery, said.asleep, said.period);
+        self.slowest = self.slowest.max(said.period);
+        self.sort(said.robot);
+    }
+
+    /// A robot is not active any more, or cannot move.
+    pub(in crate::master) fn remove(&mut self, robot: u32) {
+        if self.members.remove(&robot).is_some() {
+            self.sort(robot);
+        }
+    }
+
+    /// Handles what a robot said about luggage.
+    pub(in crate::master) fn hear_response(&mut self, said: &EventLuggage, now: Time) {
+        let rest = self.slowest().saturating_mul(REST);
+        let Some(member) = self.members.get_mut(&said.robot) else { return };
+        let luggage = Some(said.luggage);
+        member.block = said.block;
+        match said.stage {
+            LuggageStage::Taken => {
+                (member.job, member.asked, member.collected) = (luggage, None, false);
+                member.handed_back = 0;
+            }
+            LuggageStage::Delivered | LuggageStage::Refused | LuggageStage::GivenUp | LuggageStage::Release => {
+                if member.job == luggage {
+                    (member.job, member.until) = (None, now);
+                } else if member.asked == luggage && said.stage == LuggageStage::Release {
+                    member.until = now + rest.saturating_mul(1 << member.handed_back);
+                    member.handed_back = (member.handed_back + 1).min(DOUBLED);
+                }
+                member.asked.take_if(|asked| Some(*asked) == luggage);
+            }
+            LuggageStage::Request | LuggageStage::Interest => return,
+        }
+        self.changed = true;
+        self.sort(said.robot);
+    }
+
+    /// Handles a call for help, or who follows it.
+    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation) {
+        let Some(job) = situation.job() else { return };
+        let (robot, luggage) = match situation.stage {
+            CriticalStage::Request => (situation.critical, None),
+            CriticalStage::Taken => (situation.healer, Some(job.luggage)),
+            CriticalStage::Intention | CriticalStage::Release | CriticalStage::StandsIn => return,
+        };
+        if let Some(member) = self.members.get_mut(&robot) {
+            (member.job, member.collected) = (luggage, true);
+            self.sort(robot);
+        }
+    }
+
+    /// Handles where a robot is.
+    pub(super) fn hear_position(&mut self, said: &Position, from: Option<Block>, now: Time) {
+        let Some(member) = self.members.get_mut(&said.robot) else { return };
+        if member.block != said.block {
+            let took = now.since(member.moved);
+            if member.block.distance(said.block) == 1 && member.moved > Time::START && !took.is_zero() {
+                self.step = Some(self.step.map_or(took, |step| step.min(took)));
+            }
+            (member.block, member.moved) = (said.block, now);
+        }
+        member.collected |= from == Some(said.block);
+    }
+
+    /// Luggage is assigned to a robot.
+    pub(in crate::master) fn ask(&mut self, robot: u32, luggage: u32, now: Time) {
+        let until = now + self.slowest().saturating_mul(ANSWER);
+        if let Some(member) = self.members.get_mut(&robot) {
+            (member.asked, member.until) = (Some(luggage), until);
+            self.sort(robot);
+        }
+    }
+
+    /// Robots that did not answer in time, with the luggage that was assigned to them. They are not asked again soon.
+    pub(in crate::master) fn take_silent(&mut self, now: Time) -> Vec<(u32, u32)> {
+        let rest = now + self.slowest().saturating_mul(8 * REST);
+        let mut silent = Vec::new();
+        for robot in self.asked.iter().copied().collect::<Vec<_>>() {
+            if let Some(member) = self.members.get_mut(&robot).filter(|member| member.until <= now)
+                && let Some(luggage) = member.asked.take()
+            {
+                member.until = rest;
+                silent.push((robot, luggage));
+                self.sort(robot);
+            }
+        }
+        silent
+    }
+
+    /// Notes whether a robot can be asked.
+    fn sort(&mut self, robot: u32) {
+        let (is_free, is_asked) = self.members.get(&robot).map_or((false, false), |member| {
+            (!member.asleep && member.job.is_none() && member.asked.is_none(), member.asked.is_some())
+        });
+        let note = |set: &mut BTreeSet<u32>, is_in: bool| {
+            if is_in {
+                set.insert(robot)
+            } else {
+                set.remove(&robot)
+            };
+        };
+        note(&mut self.free, is_free);
+        note(&mut self.asked, is_asked);
+    }
+}

@@ -1,0 +1,189 @@
+//! Knowledge of the master of the environment, which its loops share.
+
+use saoms_api::host::cdr::{DecodeError, Reader, Writer};
+use saoms_api::host::declaration::ConstText;
+use saoms_api::{Context, Extras, Field, Header, Knowledge, Time};
+
+use super::AssignmentPolicy;
+use super::crew::Crew;
+use super::matching::Candidate;
+use crate::grid::Block;
+use crate::master::event_filter::EventFilter;
+use crate::master::open_luggage::{OpenLuggage, WaitingPiece};
+use crate::messages::{Assignment, EventLuggage, LuggageStage, Position, RobotList};
+use crate::robot::{HEARD, Job};
+use crate::validation::{MessageValidator, Validate};
+
+/// Number of periods of the slowest robot for which robots decide among themselves about luggage that one of them is
+/// interested in.
+const DISCUSSION: u32 = 6;
+
+/// Knowledge of the master of the environment: the open luggage, and the robots that can bring it.
+#[derive(Debug, Knowledge)]
+#[knowledge(name = "saoms.MasterEnvironment")]
+pub struct MasterEnvironmentKnowledge {
+    /// Luggage that waits and that no robot was asked to bring, oldest first.
+    #[entry(name = "waiting")]
+    pub(in crate::master) open: OpenLuggage,
+    /// The active robots, by number.
+    #[entry]
+    pub(in crate::master) crew: Crew,
+    /// What a loop assigns to robots in this execution.
+    #[entry(effector, quiet)]
+    pub assignments: Vec<Assignment>,
+    /// Who decides which robot brings which luggage.
+    pub(in crate::master) policy: AssignmentPolicy,
+    /// Checks what others publish.
+    pub(in crate::master) validator: MessageValidator,
+    pub(in crate::master) filter: EventFilter,
+    #[extras]
+    extras: Extras,
+}
+
+impl MasterEnvironmentKnowledge {
+    /// Knowledge without luggage and robots.
+    pub fn new(policy: AssignmentPolicy) -> MasterEnvironmentKnowledge {
+        MasterEnvironmentKnowledge {
+            policy,
+            open: OpenLuggage::default(),
+            crew: Crew::default(),
+            assignments: Vec::new(),
+            validator: MessageValidator::default(),
+            filter: EventFilter::default(),
+            extras: Extras::default(),
+        }
+    }
+}
+
+/// As an entry, a `Vec` of [`WaitingPiece`].
+impl Field for OpenLuggage {
+    const TYPE: ConstText = <Vec<WaitingPiece> as Field>::TYPE;
+    const LEAST_SIZE: usize = <Vec<WaitingPiece> as Field>::LEAST_SIZE;
+
+    fn write(&self, writer: &mut Writer) {
+        let all: Vec<WaitingPiece> = self.waiting().collect();
+        all.write(writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        Err(DecodeError::new("the master keeps this list itself, by the messages that it hears", reader.offset()))
+    }
+}
+
+impl MasterEnvironmentKnowledge {
+    /// True if the message is possible and sent by the robot that it names. Rejected messages are logged.
+    pub(in crate::master) fn accepts<M: Validate>(
+        &mut self,
+        message: &M,
+        header: Header,
+        context: &mut Context<'_>,
+    ) -> bool {
+        self.validator.accepts(message, header, self.filter.area(), context)
+    }
+
+    /// True if robots hear only a part of the map.
+    pub(in crate::master) fn is_large(&self) -> bool {
+        self.filter.area().is_some_and(|area| area.size() > HEARD)
+    }
+
+    /// Handles the state of a robot; true if it was not active before.
+    pub(in crate::master) fn hear_robot(&mut self, robot: &RobotList, header: Header) -> bool {
+        let is_new = self.open.hear_robot(robot, header);
+        if !self.open.is_gone(robot.robot) {
+            self.crew.hear_robot(robot);
+        }
+        is_new
+    }
+
+    /// Handles what a robot said about luggage. A robot that takes what another one has taken has to give it back.
+    pub(in crate::master) fn hear_response(&mut self, said: &EventLuggage, now: Time) {
+        match said.stage {
+            LuggageStage::Interest => {
+                self.open.discuss(said.luggage, now + self.crew.slowest().saturating_mul(DISCUSSION));
+            }
+            LuggageStage::Release => self.open.discuss(said.luggage, now),
+            LuggageStage::Taken => {
+                let bearer = self.open.bearer(said.luggage).filter(|bearer| *bearer != said.robot);
+                self.crew.hear_response(said, now);
+                if let Some(bearer) = bearer {
+                    return self.withdraw_from_one(said, bearer);
+                }
+                return self.open.hear_response(said);
+            }
+            _ => {}
+        }
+        self.crew.hear_response(said, now);
+        self.open.hear_response(said);
+    }
+
+    /// Two robots want to bring the same luggage: the one that took it later, or that has not taken it yet, gives it
+    /// back.
+    fn withdraw_from_one(&mut self, said: &EventLuggage, bearer: u32) {
+        let has_taken = self.crew.get(bearer).is_some_and(|member| member.job == Some(said.luggage));
+        let other = if has_taken { said.robot } else { bearer };
+        if !has_taken {
+            self.open.hear_response(said);
+        }
+        self.assign(other, said.luggage, (said.from, said.to), true);
+    }
+
+    /// True if robots decide by themselves at present who takes the luggage.
+    pub(super) fn is_discussed(&self, piece: &WaitingPiece, now: Time) -> bool {
+        self.open.is_discussed(piece.job.luggage, now)
+    }
+
+    /// Robots on the way to luggage that they have not collected.
+    pub(super) fn on_the_way(&self) -> Vec<(Candidate, WaitingPiece)> {
+        let on_the_way = self.crew.members().filter(|member| !member.collected && member.asked.is_none());
+        let with_piece = on_the_way.filter_map(|member| {
+            let piece = self.open.job(member.job?).filter(|piece| piece.only.is_none())?;
+            Some((Candidate { robot: member.robot, block: member.block }, piece))
+        });
+        with_piece.collect()
+    }
+
+    /// Robots that carry luggage, with the job.
+    pub(super) fn carrying(&self) -> Vec<(Candidate, Job)> {
+        let carrying = self.crew.members().filter(|member| member.collected);
+        let with_job = carrying.filter_map(|member| {
+            let piece = self.open.job(member.job?)?;
+            Some((Candidate { robot: member.robot, block: member.block }, piece.job))
+        });
+        with_job.collect()
+    }
+
+    /// Handles where a robot is.
+    pub(in crate::master) fn hear_position(&mut self, said: &Position, now: Time) {
+        let job = self.crew.get(said.robot).and_then(|member| member.job);
+        let from = job.and_then(|luggage| self.open.job(luggage)).map(|piece| piece.job.from);
+        self.crew.hear_position(said, from, now);
+    }
+
+    /// Assigns luggage to a robot, or takes it back.
+    pub(super) fn assign(&mut self, robot: u32, luggage: u32, (from, to): (Block, Block), withdrawn: bool) {
+        let Some(member) = self.crew.get(robot) else { return };
+        let charger = member.charger;
+        self.assignments.push(Assignment { robot, luggage, withdrawn, from, to, charger });
+    }
+
+    /// Notes what is sent to robots.
+    pub(in crate::master) fn note_assigned(&mut self, assignment: &Assignment, now: Time) {
+        if !assignment.withdrawn {
+            self.open.ask(assignment.luggage, assignment.robot);
+            self.crew.ask(assignment.robot, assignment.luggage, now);
+        }
+    }
+
+    /// Luggage that was assigned to robots that do not answer waits again.
+    pub(in crate::master) fn expire(&mut self, now: Time) {
+        for (robot, luggage) in self.crew.take_silent(now) {
+            self.open.hand_back(luggage, robot);
+        }
+    }
+
+    /// A robot is off the floor.
+    pub(in crate::master) fn take_away(&mut self, robot: u32, header: Header) {
+        self.open.take_away(robot, header);
+        self.crew.remove(robot);
+    }
+}

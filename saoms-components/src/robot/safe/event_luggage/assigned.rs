@@ -1,0 +1,63 @@
+//! Luggage that a master assigns to the robot.
+
+use saoms_api::Cause;
+
+use crate::hardware::ActionKind;
+use crate::robot::{Assigned, Job, RobotKnowledge};
+
+use super::super::energy::Feasibility;
+use super::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
+
+/// The oldest assignment that this robot has to answer, and its cause.
+pub(super) fn look_at_assignment(knowledge: &mut RobotKnowledge) -> Option<(SafeLuggageSymptom, Cause)> {
+    while let Some(Assigned { job, withdrawn, cause }) = knowledge.lists.requests.answer_assignment() {
+        let is_own = knowledge.job.is_some_and(|own| own.luggage == job.luggage);
+        if withdrawn {
+            let collects = |kind| matches!(kind, ActionKind::Collect | ActionKind::Deposit);
+            let collects = knowledge.hardware.running().is_some_and(|action| collects(action.kind));
+            if is_own && (knowledge.variables.has_luggage || collects) {
+                // It goes on: the master hears how it ends.
+                continue;
+            }
+            return Some((SafeLuggageSymptom::Withdrawn(job), cause));
+        }
+        if !is_own {
+            return Some((SafeLuggageSymptom::Assigned { job, is_free: knowledge.is_free_for_assigned() }, cause));
+        }
+    }
+    None
+}
+
+/// Whether the battery lasts for assigned luggage. The master knows who is free, and asks again later.
+pub(super) fn decide_about_assigned(job: Job, knowledge: &mut RobotKnowledge) -> SafeLuggageDecision {
+    knowledge.keep_usual_reserve();
+    match knowledge.means(&job) {
+        Feasibility::Enough => SafeLuggageDecision::Take(job),
+        Feasibility::Needs(_) => SafeLuggageDecision::HandBack(job),
+        Feasibility::Never => {
+            let why = if knowledge.is_cut_off_from(&job) { Hindrance::NoWay } else { Hindrance::Battery };
+            SafeLuggageDecision::Refuse { job, why }
+        }
+    }
+}
+
+impl RobotKnowledge {
+    /// True if it can take assigned luggage: it has no job, or one that a master assigned and that it can leave.
+    fn is_free_for_assigned(&self) -> bool {
+        let variables = &self.variables;
+        let can_leave = self.job.is_some() && self.is_assigned && !variables.has_luggage && !self.offers_help;
+        let is_idle = (self.is_free() && self.job.is_none() || can_leave) && self.untold.is_none();
+        let may = !variables.critical && !variables.asleep && !self.must_charge && !self.relieved && !self.stopped;
+        is_idle && may && !self.hardware.is_handling()
+    }
+
+    /// Makes this its job.
+    pub(super) fn take(&mut self, job: Job) {
+        // Who took an interest before decided by itself; who has a job gets another one.
+        let decided = std::mem::replace(&mut self.variables.transporter, true);
+        self.is_assigned = !decided || self.job.is_some();
+        self.variables.busy = true;
+        self.job = Some(job);
+        self.lists.requests.take(job.luggage);
+    }
+}

@@ -1,0 +1,152 @@
+//! Who brings which luggage: robots that decide by themselves, and masters that assign.
+
+use std::time::Duration;
+
+use saoms_core::report::{RunReport, RunStatus};
+use saoms_testkit::{Fleet, Run};
+
+const HOUR: Duration = Duration::from_secs(3600);
+
+/// A fleet on an open map of so many columns and rows, with these properties of the master of the environment and these
+/// robots, as their chargers and further properties.
+fn fleet(side: u32, master: &str, scenario: &str, robots: &[(u32, u32, &str)]) -> Fleet {
+    let mut text = String::from(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">",
+    );
+    let mut add = |class: &str, id: &str, properties: &str, rest: &str| {
+        text += &format!("<component name=\"{id}\"><implementation.java class=\"{class}\"/>");
+        for property in format!("ID={id} period=100 {properties}").split_whitespace() {
+            let (name, value) = property.split_once('=').unwrap();
+            text += &format!("<property name=\"{name}\">{value}</property>");
+        }
+        text += &format!("{rest}</component>\n");
+    };
+    add("saoms.World", "World", &format!("width={side} height={side} moveTime=200ms"), "");
+    add("saoms.MasterEnvironment", "Master", master, "");
+    add("saoms.MasterRobot", "Crew", "", "");
+    add("saoms.Environment", "Environment", "", &format!("<property name=\"scenario\">{scenario}</property>"));
+    for (place, (x, y, properties)) in robots.iter().enumerate() {
+        let properties = format!("chargeX={x} chargeY={y} dischargePerBlock=0.1 chargePerSecond=5 {properties}");
+        add("saoms.Robot", &format!("Robot{}", place + 1), &properties, "<reference name=\"world\" target=\"World\"/>");
+    }
+    Fleet::of_text(text + "</composite>")
+}
+
+fn count(report: &RunReport, section: &str, name: &str) -> i64 {
+    report.sections[section][name].as_i64().unwrap()
+}
+
+/// Runs it; all of its luggage is delivered once, and no robots meet.
+fn delivers(fleet: &Fleet, seed: u64, pieces: i64) -> Run {
+    let run = fleet.run(seed, HOUR);
+    assert_eq!(run.outcome.status, RunStatus::Done, "{:?}\n{}", run.outcome, run.log());
+    assert_eq!(count(&run, "luggage", "delivered"), pieces, "{}", run.log());
+    assert_eq!((count(&run, "luggage", "open"), count(&run, "collisions", "vertex")), (0, 0));
+    run
+}
+
+/// The luggage that a robot takes, in order.
+fn taken(run: &Run, robot: &str) -> Vec<String> {
+    let takes = |line: &String| Some(line.split_once("takes luggage ")?.1.split(' ').next()?.to_owned());
+    run.log_of(robot).iter().filter_map(takes).collect()
+}
+
+#[test]
+fn on_a_large_map_luggage_finds_the_robots_that_do_not_hear_of_it() {
+    let scenario = "at 1s luggage (95,95) to (60,95); at 1s luggage (1,2) to (3,4); \
+        from 40s every 3s 20 times luggage random to random";
+    let robots = [(0, 0, ""), (99, 0, ""), (50, 50, "")];
+    for seed in 1..=3 {
+        let run = delivers(&fleet(100, "", scenario, &robots), seed, 22);
+        let log = run.log_of("Master").join("\n");
+        assert!(log.contains("assigns luggage 1 to robot 3"), "the closest one: {log}");
+        assert!(!log.contains("assigns luggage 2 to"), "who hears of it decides: {log}");
+    }
+}
+
+#[test]
+fn on_a_large_map_luggage_that_no_robot_can_bring_is_given_up() {
+    // Robot 1 is far away, and breaks; the range of robot 2 is too small.
+    let scenario = "at 1s luggage (95,95) to (60,95); at 3s breakdown Robot1; at 5s luggage (52,50) to (52,52)";
+    let robots = [(0, 0, ""), (50, 50, "dischargePerSecond=4")];
+    let run = fleet(100, "", scenario, &robots).run(1, HOUR);
+    assert_eq!(run.outcome.status, RunStatus::Incomplete, "{}", run.log());
+    assert_eq!((count(&run, "luggage", "given_up"), count(&run, "luggage", "delivered")), (1, 1), "{}", run.log());
+}
+
+#[test]
+fn a_master_assigns_all_luggage_once() {
+    let robots = [(0, 0, ""), (5, 5, ""), (10, 0, ""), (0, 10, ""), (10, 10, "asleep=true")];
+    for (side, master) in [(11, "assignment=oldest"), (11, "assignment=optimal"), (90, "assignment=optimal")] {
+        for seed in 1..=3 {
+            let scenario = "at 1s 20 times luggage (0,0)..(10,10) to (0,0)..(10,10); \
+                from 5s every 2s 20 times luggage (0,0)..(10,10) to (0,0)..(10,10)";
+            let run = delivers(&fleet(side, master, scenario, &robots), seed, 40);
+            let log = run.log();
+            for luggage in 1..=40 {
+                let collected = log.matches(&format!("collected luggage {luggage} at")).count();
+                assert_eq!(collected, 1, "luggage {luggage}: {log}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_broken_robot_loses_no_luggage_that_a_master_assigned() {
+    let robots = [(0, 0, ""), (5, 5, ""), (10, 0, "")];
+    for at in ["1300ms", "2s", "4s", "6s"] {
+        let scenario = format!("at 1s 12 times luggage (0,0)..(10,10) to (0,0)..(10,10); at {at} breakdown Robot2");
+        delivers(&fleet(11, "assignment=optimal", &scenario, &robots), 1, 12);
+    }
+}
+
+#[test]
+fn a_robot_leaves_luggage_for_what_is_much_closer() {
+    let scenario = "at 1s luggage (20,0) to (21,0); at 1500ms luggage (4,0) to (4,3)";
+    let optimal = delivers(&fleet(22, "assignment=optimal", scenario, &[(0, 0, "")]), 1, 2);
+    assert_eq!(taken(&optimal, "Robot1"), ["1", "2", "1"], "{}", optimal.log());
+    let oldest = delivers(&fleet(22, "assignment=oldest", scenario, &[(0, 0, "")]), 1, 2);
+    assert_eq!(taken(&oldest, "Robot1"), ["1", "2"], "{}", oldest.log());
+}
+
+#[test]
+fn the_oldest_luggage_goes_first_or_the_closest() {
+    let scenario = "at 1s luggage (0,20) to (0,21); at 1s luggage (0,10) to (0,11); at 1s luggage (0,2) to (0,3)";
+    let robots = [(0, 0, "")];
+    for (master, order) in [("assignment=oldest", ["1", "2", "3"]), ("assignment=optimal", ["3", "2", "1"])] {
+        let run = delivers(&fleet(22, master, scenario, &robots), 1, 3);
+        assert_eq!(taken(&run, "Robot1"), order, "{master}: {}", run.log());
+    }
+}
+
+#[test]
+fn thousands_of_pieces_at_once_overflow_no_queue() {
+    for (side, master) in [(12, ""), (90, ""), (12, "assignment=optimal")] {
+        let robots = [(0, 0, ""), (5, 5, ""), (10, 0, "asleep=true")];
+        let fleet = fleet(side, master, "at 1s 3000 times luggage random to random", &robots);
+        let run = fleet.run(1, Duration::from_secs(30));
+        assert_eq!(run.outcome.status, RunStatus::Elapsed, "{:?}", run.outcome);
+        assert_eq!(count(&run, "luggage", "requested"), 3000);
+    }
+}
+
+#[test]
+fn nobody_is_sent_to_sleep_while_luggage_waits() {
+    let pieces: String = (0..8).map(|y| format!("at 2s luggage (10,{y}) to (1,{y});")).collect();
+    let scenario = format!("at 1s landing 8; {pieces} at 8s landing 8; {}", pieces.replace("at 2s", "at 9s"));
+    let robots: Vec<(u32, u32, &str)> = (0..5).map(|y| (0, y + 6, if y == 0 { "" } else { "asleep=true" })).collect();
+    let run = delivers(&fleet(12, "", &scenario, &robots), 1, 16);
+    let log = run.log();
+    let place = |what: &str| log.find(what).unwrap_or_else(|| panic!("{what}: {log}"));
+    assert!(place("wakes robots") < place("takes luggage"));
+    let last = log.rfind("takes luggage").unwrap();
+    assert!(log.find(" to charge\n").is_none_or(|sent| sent > last), "{log}");
+}
+
+#[test]
+fn robots_sleep_again_when_what_was_announced_does_not_come() {
+    let scenario = "at 1s landing 4; at 60s luggage (3,3) to (5,5)";
+    let robots = [(0, 0, ""), (5, 5, "asleep=true"), (10, 0, "asleep=true")];
+    let log = delivers(&fleet(12, "", scenario, &robots), 1, 1).log();
+    assert_eq!((log.matches(": wakes up").count(), log.matches(": sleeps").count()), (2, 2), "{log}");
+}
