@@ -102,10 +102,7 @@ pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Du
         let (x, y) = place(robot);
         let name = format!("Robot{:05}", robot + 1);
         let delay = if phases == Phases::Spread { period * robot / robots } else { Duration::ZERO };
-        // All robots answer each other, and all of them may receive a new request in the same period.
-        let queue = (20 * robots).max(1024);
-        let properties =
-            [("chargeX", x), ("chargeY", y), ("queue", queue)].map(|(name, value)| (name, value.to_string()));
+        let properties = [("chargeX", x), ("chargeY", y)].map(|(name, value)| (name, value.to_string()));
         composite.open(
             &Task { class: "saoms.Robot", name, period, delay },
             &properties.each_ref().map(|(name, value)| (*name, value.as_str())),

@@ -57,6 +57,20 @@ fn messages_take_effect_at_their_time_before_those_who_are_due_then() {
 }
 
 #[test]
+fn messages_wait_for_room_in_the_queues_of_their_readers() {
+    let (fleet, diary) = start("A actor period=10 queue=4 subscribes=[TALK] each=[hear]", simulated(200));
+    let fleet = fleet.unwrap();
+    for number in 0..20 {
+        say(&fleet.handle(), "TALK", json!({ "text": format!("word{number}") }), Some(15)).unwrap();
+    }
+    let report = fleet.run_to_end();
+    assert_eq!(report.outcome.status, RunStatus::Elapsed, "{:?}", report.outcome);
+    let told = diary.lines();
+    let places: Vec<usize> = (0..20).map(|number| told.find(&format!("word{number}")).unwrap()).collect();
+    assert!(places.is_sorted(), "in their order: {told}");
+}
+
+#[test]
 fn messages_are_checked_against_the_schema_of_their_topic() {
     let (fleet, _) = start(FLEET, simulated(30));
     let fleet = fleet.unwrap();
