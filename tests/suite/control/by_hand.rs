@@ -54,7 +54,7 @@ fn every_message_of_the_manual_is_sent_by_hand() {
 
     // A robot that is none of the fleet.
     let robot = json!({"robot": 70, "active": true, "battery": 50.0, "in_charge": false, "asleep": false,
-        "charger": block(0, 10), "period": 50_000});
+        "charger": block(0, 10), "period": 50_000, "block": block(6, 6), "policy": "SAFE"});
     publish(&running, "RLMSTOPIC", &robot);
     running.until("MasterRobot", |master| master["values"]["robots"] == 3);
     let position = json!({"robot": 70, "block": block(6, 6), "next": block(6, 6), "wanted": block(6, 6),
@@ -82,7 +82,7 @@ fn nobody_speaks_in_the_name_of_a_robot() {
     let running = Running::start(&fleet(), &["--stay"]);
     running.until("Robot1", state("free"));
     let robot = json!({"robot": 1, "active": false, "battery": 50.0, "in_charge": false, "asleep": false,
-        "charger": block(0, 1), "period": 50_000});
+        "charger": block(0, 1), "period": 50_000, "block": block(0, 1), "policy": "SAFE"});
     let position = json!({"robot": 2, "block": block(6, 6), "next": block(6, 6), "wanted": block(6, 6),
         "priority": {"rank": 0, "robot": 2}});
     let taken = json!({"robot": 1, "luggage": 5, "stage": "TAKEN", "from": block(1, 1), "to": block(2, 2),
