@@ -319,6 +319,10 @@ typedef struct SaomsDepartedView {
     uint32_t sender;
 } SaomsDepartedView;
 
+// The visitor of the publishers of a topic, called with the index of a component in the running fleet, and with 1 if
+// that component was ever scheduled, else 0, and with the number by which it says who speaks in messages, or -1.
+typedef void (*SaomsPublisherVisitor)(void *visitor, uint32_t sender, uint32_t has_begun, int64_t number);
+
 // The functions of a component's context. The first argument of each is the `state` of the handle that the present
 // call was lent.
 //
@@ -442,6 +446,9 @@ typedef struct SaomsHostFunctions {
     // Says that a person is needed: a kind such as `assistance`, what it is about, such as a number, or empty, and a
     // line for that person. A null line says that the alert of this kind and subject is over.
     void (*alert)(void *state, struct SaomsBytes kind, struct SaomsBytes subject, struct SaomsBytes line);
+    // Shows each other component of the fleet that may publish on a topic, as it is declared, to `visit`, which gets
+    // `visitor` as its first argument. The name of the topic is that in the declarations.
+    void (*publishers)(void *state, struct SaomsBytes topic, void *visitor, SaomsPublisherVisitor visit);
 } SaomsHostFunctions;
 
 // A message that arrived.

@@ -151,7 +151,15 @@ pub struct HostFunctions {
     /// Says that a person is needed: a kind such as `assistance`, what it is about, such as a number, or empty, and a
     /// line for that person. A null line says that the alert of this kind and subject is over.
     pub alert: unsafe extern "C" fn(state: *mut c_void, kind: Bytes, subject: Bytes, line: Bytes),
+    /// Shows each other component of the fleet that may publish on a topic, as it is declared, to `visit`, which gets
+    /// `visitor` as its first argument. The name of the topic is that in the declarations.
+    pub publishers:
+        unsafe extern "C" fn(state: *mut c_void, topic: Bytes, visitor: *mut c_void, visit: PublisherVisitor),
 }
+
+/// The visitor of the publishers of a topic, called with the index of a component in the running fleet, and with 1 if
+/// that component was ever scheduled, else 0, and with the number by which it says who speaks in messages, or -1.
+pub type PublisherVisitor = unsafe extern "C" fn(visitor: *mut c_void, sender: u32, has_begun: u32, number: i64);
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.
 pub type LoopVisitor = unsafe extern "C" fn(

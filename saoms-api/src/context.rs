@@ -4,8 +4,8 @@ use std::time::Duration;
 use crate::host::{Host, TARGET_SHIFT};
 use crate::host::{Phase, Reference, ServiceCall, SharedMessage};
 use crate::{
-    CallError, Cause, Chance, Departed, Failure, Header, Loops, Message, Messages, Publisher, Record, Region,
-    ReportValue, StopFunction, Subscription, Time, Topic, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, Header, KnownPublisher, Loops, Message, Messages, Publisher, Record,
+    Region, ReportValue, StopFunction, Subscription, Time, Topic, Value, Work,
 };
 
 /// Severity of a log line.
@@ -255,6 +255,40 @@ impl<'a> Context<'a> {
     /// before.
     pub fn departed<M: Message>(&self, subscription: &Subscription<M>) -> &[Departed] {
         self.host.departed(subscription.index())
+    }
+
+    /// The other components of the fleet that may publish on a topic, as their classes and loops declare it, with the
+    /// name that the topic has for this component. A component that has to hear from each of them knows by that when
+    /// one is missing.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure, Message, Topic};
+    ///
+    /// #[derive(Clone, Debug, Message)]
+    /// struct Grant {
+    ///     block: u32,
+    /// }
+    ///
+    /// const GRANT: Topic<Grant> = Topic::state("GRANT");
+    ///
+    /// /// Waits for a grant where somebody gives grants.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Guest", periodic, subscribes(GRANT))]
+    /// struct Guest {
+    ///     waits: bool,
+    /// }
+    ///
+    /// impl Component for Guest {
+    ///     type Properties = ();
+    ///
+    ///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         self.waits = !context.publishers(&GRANT).is_empty();
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    pub fn publishers<M: Message>(&self, topic: &Topic<M>) -> Vec<KnownPublisher> {
+        self.host.publishers(topic.name())
     }
 
     /// Keeps these bytes beyond a crash of the component, in place of those that it kept before:

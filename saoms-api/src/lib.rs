@@ -95,7 +95,7 @@ pub use saved::Saved;
 pub use stop::StopFunction;
 pub use task::{TaskInterface, TaskInterfaceReference};
 pub use time::Time;
-pub use topic::{Publisher, Subscription, Topic};
+pub use topic::{KnownPublisher, Publisher, Subscription, Topic};
 
 pub use saoms_derive::{Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface};
 

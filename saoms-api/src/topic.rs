@@ -156,3 +156,14 @@ macro_rules! handle {
 
 handle!(Publisher);
 handle!(Subscription);
+
+/// A component that may publish on a topic. See [`Context::publishers`](crate::Context::publishers).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownPublisher {
+    /// Its index in the running fleet, as in [`Header::sender`](crate::Header::sender).
+    pub sender: u32,
+    /// True if it was ever scheduled.
+    pub has_begun: bool,
+    /// Number by which it says who speaks in messages, where its class has one.
+    pub number: Option<u32>,
+}

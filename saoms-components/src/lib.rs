@@ -24,3 +24,4 @@ mod state;
 pub mod text;
 mod validation;
 pub mod world;
+pub mod zone;

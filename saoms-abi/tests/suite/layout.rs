@@ -60,7 +60,7 @@ fn layout() -> String {
         RecordView { id, text, names, values, count }
         HostHandle { state, functions, inboxes, inbox_count }
         TopicView { name, message, schema, kind }
-        HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed, register_stop, keep, kept, set_region, departed, goes_on, raise, alert }
+        HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed, register_stop, keep, kept, set_region, departed, goes_on, raise, alert, publishers }
         EntriesHandle { state, functions }
         EntryView { name, of, effector }
         EntriesFunctions { size, declaration, count, describe, get, set, get_bytes, set_bytes, destroy }
@@ -89,6 +89,7 @@ fn layout() -> String {
         ("Entry", type_name::<EntryPoint>()),
         ("Construct", type_name::<Construct>()),
         ("LoopVisitor", type_name::<LoopVisitor>()),
+        ("PublisherVisitor", type_name::<PublisherVisitor>()),
     ];
     let _ = writeln!(text, "\nStatus: {} bytes", size_of::<Status>());
     for (name, of) in functions {

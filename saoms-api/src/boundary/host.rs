@@ -4,13 +4,13 @@ use std::ffi::c_void;
 use std::time::Duration;
 
 use saoms_abi::{
-    Bytes, DepartedView, HostFunctions, LoopInstance, LoopVisitor, RecordView, RegionView, ReportView, Sink, Status,
-    StopView, TopicView, ValueView,
+    Bytes, DepartedView, HostFunctions, LoopInstance, LoopVisitor, PublisherVisitor, RecordView, RegionView,
+    ReportView, Sink, Status, StopView, TopicView, ValueView,
 };
 
 use crate::host::Host;
 use crate::host::{Phase, SharedMessage, shown};
-use crate::{Cause, Departed, Failure, Header, Level, Region, Time, Work};
+use crate::{Cause, Departed, Failure, Header, KnownPublisher, Level, Region, Time, Work};
 
 use super::convert::{PropertyViews, read_record, read_report, read_topic, read_value};
 use super::guard::{guarded, guarded_call, guarded_value};
@@ -166,6 +166,17 @@ unsafe extern "C" fn departed(state: *mut c_void, subscription: u32, place: usiz
             }
             _ => 0,
         })
+    }
+}
+
+unsafe extern "C" fn publishers(state: *mut c_void, topic: Bytes, visitor: *mut c_void, visit: PublisherVisitor) {
+    // SAFETY: callers pass the state of their handle, their own function and state, and lend the name to this call.
+    unsafe {
+        with_host(state, (), |host| {
+            for KnownPublisher { sender, has_begun, number } in host.publishers(topic.get_text().unwrap_or_default()) {
+                visit(visitor, sender, u32::from(has_begun), number.map_or(-1, i64::from));
+            }
+        });
     }
 }
 
@@ -401,6 +412,7 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     goes_on,
     raise,
     alert,
+    publishers,
 };
 
 /// A time of the other side.

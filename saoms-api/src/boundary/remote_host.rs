@@ -14,7 +14,8 @@ use crate::host::{
     DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
 use crate::{
-    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, KnownPublisher, Level, Record, Region, ReportValue, StopFunction,
+    Time, Value, Work,
 };
 
 use super::buffer::{Buffer, sink};
@@ -138,6 +139,13 @@ unsafe extern "C" fn visit_loop(
     }
 }
 
+/// Adds a component to the list of [`RemoteHost::publishers`].
+unsafe extern "C" fn visit_publisher(list: *mut c_void, sender: u32, has_begun: u32, number: i64) {
+    // SAFETY: the host passes on the list of `publishers`.
+    let list = unsafe { &mut *list.cast::<Vec<KnownPublisher>>() };
+    list.push(KnownPublisher { sender, has_begun: has_begun != 0, number: u32::try_from(number).ok() });
+}
+
 struct Text<'a>(&'a mut Vec<u8>);
 
 impl fmt::Write for Text<'_> {
@@ -241,6 +249,12 @@ impl Host for RemoteHost<'_> {
 
     fn departed(&self, subscription: u32) -> &[Departed] {
         self.departed.get(subscription as usize).map_or(&[], Vec::as_slice)
+    }
+
+    fn publishers(&self, topic: &str) -> Vec<KnownPublisher> {
+        let mut known: Vec<KnownPublisher> = Vec::new();
+        get!(self.publishers, Bytes::text(topic), (&raw mut known).cast(), visit_publisher);
+        known
     }
 
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {

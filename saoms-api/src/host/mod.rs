@@ -36,7 +36,8 @@ pub use visible::{Visible, is_invisible, one_line, shorten, shown};
 pub use xml::escaped;
 
 use crate::{
-    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, KnownPublisher, Level, Record, Region, ReportValue, StopFunction,
+    Time, Value, Work,
 };
 
 /// The lowest bit of the number of a target in the handle of a reference; the bits below are the place of the reference
@@ -117,6 +118,11 @@ pub trait Host {
     /// # Errors
     /// As there.
     fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure>;
+    /// See [`Context::publishers`](crate::Context::publishers). The name of the topic is that in the declarations.
+    fn publishers(&self, topic: &str) -> Vec<KnownPublisher> {
+        let _ = topic;
+        Vec::new()
+    }
     /// See [`Context::departed`](crate::Context::departed).
     fn departed(&self, subscription: u32) -> &[Departed];
     /// See [`Context::keep`](crate::Context::keep).

@@ -4,6 +4,7 @@
 mod environment;
 mod jobs;
 mod movement;
+mod passage;
 mod team;
 mod visit;
 
@@ -13,6 +14,7 @@ use saoms_api::{Message, Topic};
 pub use environment::*;
 pub use jobs::*;
 pub use movement::*;
+pub use passage::*;
 pub use team::*;
 pub use visit::*;
 

@@ -40,7 +40,7 @@ impl Outcome {
 impl RobotKnowledge {
     /// Starts an action; if it is done at once, updates the robot's knowledge.
     pub(crate) fn begin(&mut self, context: &mut Context<'_>, action: Action) -> Result<Outcome, Failure> {
-        if self.stopped {
+        if self.stopped || self.waits_for_grant(action) {
             return Ok(Outcome::NotBegun);
         }
         if action.kind != ActionKind::Move {
@@ -141,6 +141,9 @@ impl RobotKnowledge {
         match kind {
             ActionKind::Move => {
                 self.block = block;
+                if let Some(zones) = &mut self.zones {
+                    zones.arrive(block);
+                }
                 self.use_battery_to_drive();
                 self.tally.blocks += 1;
                 self.judge(context, block)?;

@@ -99,5 +99,8 @@ impl RobotKnowledge {
             self.traffic.went(self.block);
         }
         (self.block, self.next) = (block, block);
+        if let Some(zones) = &mut self.zones {
+            zones.arrive(block);
+        }
     }
 }

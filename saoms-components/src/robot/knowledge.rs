@@ -11,6 +11,7 @@ use super::actions::Outcome;
 use super::hardware_client::HardwareClient;
 use super::safe::{Energy, Leg, RESERVE, Traffic};
 use super::tally::Tally;
+use super::zone_client::ZoneClient;
 use super::{Battery, Job, Lists, Policy, Routes};
 
 /// Knowledge of a robot about itself, its job, the other robots, and the area. Its loops share it.
@@ -154,6 +155,8 @@ pub struct RobotKnowledge {
     pub(super) energy: Energy,
     /// The robots around it.
     pub(super) traffic: Traffic,
+    /// Its passage through zones, where its site has zones.
+    pub(super) zones: Option<Box<ZoneClient>>,
     /// The way to its current goal.
     pub(super) leg: Leg,
     #[extras]
@@ -217,6 +220,7 @@ impl RobotKnowledge {
             said_homeward: false,
             energy: Energy::default(),
             traffic: Traffic::default(),
+            zones: None,
             leg: Leg::default(),
             extras: Extras::default(),
         }

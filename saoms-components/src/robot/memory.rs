@@ -11,6 +11,7 @@ use super::lists::ListsMemory;
 use super::routes::RoutesMemory;
 use super::safe::{Energy, Leg, TrafficMemory};
 use super::tally::Tally;
+use super::zone_client::ZoneMemory;
 use crate::grid::Block;
 use crate::validation::SpeakerMemory;
 
@@ -49,6 +50,7 @@ struct Memory {
     energy: Energy,
     traffic: TrafficMemory,
     leg: Leg,
+    zones: Option<ZoneMemory>,
     loops: SavedLoops,
 }
 
@@ -116,6 +118,7 @@ impl RobotKnowledge {
             energy: self.energy.clone(),
             traffic: self.traffic.memory(),
             leg: self.leg,
+            zones: self.zones.as_ref().and_then(|zones| zones.save()),
             loops,
         })
     }
@@ -147,6 +150,9 @@ impl RobotKnowledge {
         (self.loaded, self.said_homeward) = (memory.loaded, memory.said_homeward);
         (self.energy, self.leg) = (memory.energy, memory.leg);
         self.traffic.restore(memory.traffic);
+        if let (Some(zones), Some(memory)) = (&mut self.zones, memory.zones) {
+            zones.restore(self.number, memory);
+        }
         Ok(memory.loops)
     }
 }

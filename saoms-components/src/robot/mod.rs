@@ -25,12 +25,15 @@ pub mod safe;
 mod sayings;
 mod tally;
 mod upkeep;
+mod zone_client;
 
 use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Time};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{ASSIGNMENT, COLLISION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST, VISIT};
+use crate::messages::{
+    ASSIGNMENT, COLLISION, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, POSITION, ROBOT_LIST, TERRITORY, VISIT,
+};
 
 pub use battery::{Battery, Consumption};
 pub use job::Job;
@@ -42,6 +45,7 @@ pub use routes::Routes;
 use hardware_client::{HardwareClient, Reply};
 pub(crate) use receive::HEARD;
 use receive::Topics;
+use zone_client::ZoneClient;
 
 /// The kind of alerts of robots that cannot go on without help.
 const ASSISTANCE: &str = "assistance";
@@ -79,8 +83,8 @@ const ASSISTANCE: &str = "assistance";
             classic::ClassicPathFollower
         )
     ),
-    publishes(COLLISION),
-    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT),
+    publishes(COLLISION, GRANT_REQUEST),
+    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT, TERRITORY, GRANT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
@@ -125,6 +129,9 @@ impl Component for Robot {
         self.knowledge.validator.note_speaker(self.knowledge.number, context.sender());
         self.knowledge.collisions = context.publish(&COLLISION)?;
         self.topics = Topics::subscribe(context)?;
+        if self.knowledge.policy == Policy::Safe {
+            self.knowledge.zones = ZoneClient::new(context)?.map(Box::new);
+        }
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
         if context.goes_on() {
@@ -142,6 +149,8 @@ impl Component for Robot {
             return self.knowledge.leave_floor(context);
         };
         if self.knowledge.shut_down {
+            self.knowledge.hear_zones(context)?;
+            self.knowledge.ask_zones(context)?;
             return self.knowledge.stop_for_good(context);
         }
         let entered = self.enter(context)?;
@@ -155,6 +164,9 @@ impl Component for Robot {
         }
         let was_critical = self.knowledge.variables.critical;
         self.knowledge.hear(&mut self.topics, context)?;
+        if entered {
+            self.knowledge.hear_zones(context)?;
+        }
         self.knowledge.begin_execution(context)?;
         self.loops.monitor(&mut *self.knowledge, context)?;
         self.knowledge.forget_gone(&gone);
@@ -166,6 +178,7 @@ impl Component for Robot {
             self.loops.adapt(&mut *self.knowledge, context)?;
             self.knowledge.carry_out(&self.loops, context)?;
             self.knowledge.end_execution(was_critical, context)?;
+            self.knowledge.ask_zones(context)?;
             self.knowledge.note_waiting();
             // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
             if in_charge || !self.knowledge.variables.in_charge {
@@ -183,6 +196,7 @@ impl Component for Robot {
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         // Hardware that is busy is asked again: it must not go on without its robot.
         self.knowledge.leave_hardware(context)?;
+        self.knowledge.leave_zones(context)?;
         self.knowledge.report_row(context);
         self.loops.shutdown(&mut *self.knowledge, context)
     }

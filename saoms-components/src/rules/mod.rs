@@ -17,12 +17,11 @@ mod number;
 mod robots;
 pub(crate) mod scenario;
 mod shifts;
-mod slow_world;
 mod start;
 mod sustain;
 mod unlikely;
-mod unused_world;
 mod worlds;
+mod zones;
 
 saoms_api::fleet_rules!(
     scenario::luggage::RULE,
@@ -33,18 +32,19 @@ saoms_api::fleet_rules!(
     sustain::RULE,
     divided::RULE,
     scenario::unserved::RULE,
-    unused_world::RULE,
+    worlds::unused::RULE,
     masters::RULE,
     environments::RULE,
     apart::RULE,
     shifts::RULE,
     map::size::RULE,
     scenario::broken_twice::RULE,
-    worlds::RULE,
+    worlds::mixed::RULE,
     missing_loop::RULE,
     scenario::no_work::RULE,
     scenario::early_end::RULE,
     unlikely::RULE,
     classic_walls::RULE,
-    slow_world::RULE,
+    worlds::slow::RULE,
+    zones::RULE,
 );

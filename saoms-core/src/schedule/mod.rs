@@ -22,6 +22,7 @@ mod metrics;
 mod names;
 mod order;
 mod os;
+mod publishers;
 mod settings;
 mod shared;
 mod speakers;

@@ -18,3 +18,4 @@ mod slow;
 mod sustained;
 mod visits;
 mod waiting;
+mod zones;

@@ -23,6 +23,7 @@ mod robot_list;
 mod robot_state;
 mod traffic;
 mod waiting;
+mod zoned;
 
 pub use battery::SafeBattery;
 pub use collision::SafeCollision;

@@ -133,6 +133,7 @@ impl Loop for SafePathFollower {
             return Ok((!said).then_some(SafePathSymptom::Bound { block }));
         }
         knowledge.set_leg(context.now());
+        knowledge.aim_in_zones();
         if self.rests(knowledge) {
             self.waiting.end(context);
             return Ok(None);
@@ -158,7 +159,11 @@ impl Loop for SafePathFollower {
             return Ok(Some(SafePathDecision::Hold));
         }
         let from = knowledge.next;
-        let wanted = knowledge.traffic.wanted(from).filter(|_| !knowledge.variables.stop_a_period);
+        let wanted = match &knowledge.zones {
+            Some(zones) => zones.next(),
+            None => knowledge.traffic.wanted(from),
+        };
+        let wanted = wanted.filter(|_| !knowledge.variables.stop_a_period);
         Ok(Some(match wanted {
             _ if knowledge.block != from => SafePathDecision::MoveOn(from),
             Some(wanted) => SafePathDecision::Go(wanted),
@@ -227,7 +232,11 @@ impl SafePathFollower {
         }
         let own = knowledge.leg.priority(knowledge.number);
         let holds = knowledge.job_here().is_some() || knowledge.holds_charger();
-        if !holds && knowledge.traffic.inherited(own, at) != own {
+        let makes_way = match &knowledge.zones {
+            Some(zones) => zones.next().is_some(),
+            None => knowledge.traffic.inherited(own, at) != own,
+        };
+        if !holds && makes_way {
             return false;
         }
         let priority = if holds { IMMOVABLE } else { own };
@@ -271,6 +280,13 @@ fn want(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Position {
         (at, IMMOVABLE)
     } else {
         let own = knowledge.leg.priority(knowledge.number);
+        if let Some(zones) = &knowledge.zones {
+            // Right of way is the matter of zones.
+            let wanted = zones.next().filter(|block| *block != at).unwrap_or(at);
+            let wanted = if wanted.distance(at) == 1 { wanted } else { at };
+            knowledge.traffic.follow_grant(wanted);
+            return Position { wanted, priority: own, ..knowledge.position() };
+        }
         let priority = knowledge.traffic.inherited(own, at);
         let goal = knowledge.leg.goal;
         let y_first = goal == Some(knowledge.charge_block);

@@ -132,6 +132,12 @@ impl Traffic {
         self.waited = 0;
     }
 
+    /// Wants a block that a zone granted.
+    pub(super) fn follow_grant(&mut self, block: Block) {
+        self.wanted = Some(block);
+        self.waited = 0;
+    }
+
     /// Another robot that holds or wants the block.
     pub(super) fn in_the_way(&self, block: Block) -> Option<u32> {
         self.near.iter().find(|peer| peer.holds(block) || peer.wanted == block).map(|peer| peer.robot)

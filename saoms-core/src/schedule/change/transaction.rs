@@ -84,6 +84,7 @@ impl<'a> Change<'a> {
             wanted[place] = wanted[place].take().map(|spec| retargeted(spec, &numbers));
         }
         engine.prepare(self.shared, added.iter().filter_map(|&place| wanted[place].clone()), &self.added);
+        engine.publishers = None;
         self.take_out(&mut engine, &removed, &replaced.iter().map(|one| one.current as u32).collect::<Vec<_>>());
         self.shared.release(engine);
         for place in order {
@@ -245,6 +246,7 @@ impl<'a> Change<'a> {
             engine.leave_topics(number, now);
             engine.forget(number);
         }
+        engine.publishers = None;
         self.shared.release(engine);
     }
 
@@ -317,7 +319,7 @@ impl<'a> Change<'a> {
             }
         }
         engine.takers = (None, engine.takers.1 + 1);
-        engine.speakers = None;
+        (engine.speakers, engine.publishers) = (None, None);
         engine.end_if_done(now);
         self.shared.release(engine);
         drop(outgoing);

@@ -9,8 +9,8 @@ use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT, shown};
 use saoms_api::{
-    CallError, Cause, Chance, Departed, Failure, Header, Level, Record, Region, ReportValue, StopFunction, Time, Value,
-    Work,
+    CallError, Cause, Chance, Departed, Failure, Header, KnownPublisher, Level, Record, Region, ReportValue,
+    StopFunction, Time, Value, Work,
 };
 
 use super::body::{KeptBytes, Part, subject};
@@ -299,6 +299,10 @@ impl Host for ComponentHost<'_> {
         let reader = &mut self.part.subscriptions[subscription as usize];
         self.shared.lock().bus.set_region(reader, region, queue);
         Ok(())
+    }
+
+    fn publishers(&self, topic: &str) -> Vec<KnownPublisher> {
+        self.shared.publishers(&self.spec().topic(topic), self.part.index)
     }
 
     fn departed(&self, subscription: u32) -> &[Departed] {

@@ -34,6 +34,7 @@ use super::component::body::Job;
 use super::hold::Pace;
 use super::inject::Injections;
 use super::order::PendingOrders;
+use super::publishers::DeclaredPublishers;
 use super::settings::{ClockKind, Settings, nanos};
 use super::speakers::Speakers;
 use super::stop::Stops;
@@ -92,6 +93,8 @@ pub(crate) struct Engine {
     pub(crate) takers: (Option<Arc<Takers>>, u64),
     /// The components that say who they are in messages, once somebody asked for them since that change.
     pub(crate) speakers: Option<Arc<Speakers>>,
+    /// The components that declare to publish on each topic, once somebody asked for them since that change.
+    pub(crate) publishers: Option<Arc<DeclaredPublishers>>,
     /// The number of each component, by its path.
     pub(crate) numbers: HashMap<Arc<str>, u32>,
     /// The component of a change that failed in a call, before the change was committed.
@@ -191,6 +194,7 @@ impl Engine {
             faults: FaultPlay::new(settings.seed),
             takers: (None, 0),
             speakers: None,
+            publishers: None,
             numbers: HashMap::new(),
             held_failure: None,
             cause: None,

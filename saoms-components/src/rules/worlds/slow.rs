@@ -7,11 +7,11 @@ use saoms_api::host::format_duration;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::robots::{by_world, robots};
-use super::unlikely::{LONG, SHORT};
+use crate::rules::robots::{by_world, robots};
+use crate::rules::unlikely::{LONG, SHORT};
 use crate::world::World;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5022",
         name: "slow-world",

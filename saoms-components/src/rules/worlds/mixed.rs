@@ -5,12 +5,12 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::map::luggage;
-use super::robots::{by_world, robots};
 use crate::messages::ENVIRONMENT;
+use crate::rules::map::luggage;
+use crate::rules::robots::{by_world, robots};
 use crate::world::World;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5016",
         name: "worlds-mixed",

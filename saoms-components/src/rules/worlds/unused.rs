@@ -5,15 +5,15 @@ use std::collections::{HashMap, HashSet};
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::hearing::site_of;
-use super::map::{WorldMap, areas};
-use super::robots::{FleetRobot, by_world, may_be_others, robots};
 use crate::environment::Environment;
 use crate::messages::{AREA, ROBOT_LIST};
 use crate::robot::Robot;
+use crate::rules::hearing::site_of;
+use crate::rules::map::{WorldMap, areas};
+use crate::rules::robots::{FleetRobot, by_world, may_be_others, robots};
 use crate::world::World;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5009",
         name: "unused-world",

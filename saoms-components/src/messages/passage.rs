@@ -1,0 +1,188 @@
+//! Messages between zones and robots: who may enter which block.
+
+use saoms_api::{Field, Message, Topic};
+
+use crate::grid::{Block, Map};
+use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+
+/// Territories of zones, the newest message of each.
+///
+/// Published by zones; read by robots and zones.
+pub const TERRITORY: Topic<Territory> = Topic::state("ZONETOPIC").optional();
+
+/// Requests of robots to zones, the newest of each robot to each zone.
+///
+/// Published by robots; read by zones.
+pub const GRANT_REQUEST: Topic<GrantRequest> = Topic::state("GRANTREQUESTTOPIC").optional();
+
+/// Grants of zones to robots, the newest of each zone to each robot.
+///
+/// Published by zones; read by robots.
+pub const GRANT: Topic<Grant> = Topic::state("GRANTTOPIC").optional();
+
+/// Blocks for which a zone grants passage: a rectangle of the map.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
+#[message(
+    key = "zone",
+    speaker("zone", instead = "to end a zone, stop its component; its robots keep the blocks that they hold")
+)]
+pub struct Territory {
+    /// Number of the zone.
+    pub zone: u32,
+    /// Term of the zone. A zone that lost its record of grants begins a higher one.
+    pub term: u64,
+    /// Its first block.
+    pub corner: Block,
+    /// Number of its columns.
+    pub width: u32,
+    /// Number of its rows.
+    pub height: u32,
+}
+
+impl Territory {
+    /// True if the zone grants passage through the block.
+    pub fn contains(&self, block: Block) -> bool {
+        let Territory { corner, width, height, .. } = *self;
+        let inside = |value: i32, from: i32, length: u32| {
+            i64::from(value) >= i64::from(from) && i64::from(value) < i64::from(from) + i64::from(length)
+        };
+        inside(block.x, corner.x, width) && inside(block.y, corner.y, height)
+    }
+}
+
+/// A block of a robot's passage through a zone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Field)]
+pub struct Step {
+    /// Number of the step: a zone counts the steps that it grants to a robot. 0 is the block where the robot entered
+    /// the floor, without a grant.
+    pub number: u64,
+    /// The block.
+    pub block: Block,
+}
+
+/// What a robot holds of a zone, and where it wants to go.
+///
+/// The newest request replaces all earlier ones. What a robot released it holds never again, so that a request that
+/// arrives late, twice or after a newer one does no harm.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
+#[message(
+    key = "link",
+    place = "block",
+    speaker(
+        "robot",
+        instead = "to keep the robot at its block, stop it with `estop`; if it was removed from the floor, send `gone`"
+    )
+)]
+pub struct GrantRequest {
+    /// Number of the robot and of the zone, in one number.
+    pub link: u64,
+    /// Number of the zone.
+    pub zone: u32,
+    /// Term of the zone that the robot knows.
+    pub term: u64,
+    /// Number of the robot.
+    pub robot: u32,
+    /// Number that grows when the robot begins anew, without memory of its grants.
+    pub incarnation: u64,
+    /// Number of the request, in the order in which the robot wrote its requests to this zone.
+    pub number: u64,
+    /// Position of the robot.
+    pub block: Block,
+    /// End of the robot's passage: the last block that it holds.
+    pub end: Block,
+    /// Highest number of a step that the robot has received.
+    pub received: u64,
+    /// Steps that the robot holds. It released all others up to `received`.
+    pub held: Vec<Step>,
+    /// Block where it wants to go; the same as `end` if it wants to stay.
+    pub goal: Block,
+    /// Block of its charger.
+    pub charger: Block,
+    /// Rank of its way: the higher rank goes first.
+    pub rank: u64,
+    /// What it does when another robot wants its block.
+    pub standing: Standing,
+}
+
+/// What a robot does when another one wants its block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Field)]
+pub enum Standing {
+    /// It makes way.
+    #[default]
+    MakesWay,
+    /// It stays for now: it handles luggage, has to charge, or is stopped.
+    Stays,
+    /// It cannot move any more, so that others have to drive around it.
+    Lost,
+}
+
+/// The steps that a zone granted to a robot, and that the robot did not release.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
+#[message(key = "link", place = "block", speaker("zone", instead = "stop the zone, if it has to grant nothing"))]
+pub struct Grant {
+    /// Number of the robot and of the zone, in one number.
+    pub link: u64,
+    /// Number of the zone.
+    pub zone: u32,
+    /// Term of the zone.
+    pub term: u64,
+    /// Number of the robot.
+    pub robot: u32,
+    /// Incarnation of the robot to which it is granted.
+    pub incarnation: u64,
+    /// Number of the robot's newest request that the zone took in.
+    pub heard: u64,
+    /// Position of the robot, as the zone knows it.
+    pub block: Block,
+    /// The steps, in their order.
+    pub steps: Vec<Step>,
+}
+
+/// Number of a robot and a zone in one number, the key of their messages.
+pub fn link(zone: u32, robot: u32) -> u64 {
+    u64::from(zone) << 32 | u64::from(robot)
+}
+
+impl Validate for Territory {
+    const WHAT: &'static str = "the territory";
+
+    fn about(&self) -> String {
+        format!("zone {}", self.zone)
+    }
+
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+        // Zones have numbers of their own: a validator of territories sees no robots.
+        validator.check_speaker(self.zone, sender)
+    }
+}
+
+impl Validate for GrantRequest {
+    const WHAT: &'static str = "the request for a grant";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+        let held = self.held.iter().map(|step| step.block);
+        for block in [self.block, self.end, self.goal, self.charger].into_iter().chain(held) {
+            Problem::of_block(block, area)?;
+        }
+        validator.check_speaker(self.robot, sender)
+    }
+}
+
+impl Validate for Grant {
+    const WHAT: &'static str = "the grant";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+        for step in &self.steps {
+            Problem::of_block(step.block, area)?;
+        }
+        validator.check_known_speaker(self.zone, sender)
+    }
+}

@@ -1,0 +1,96 @@
+//! What a robot asks of the zones of its site.
+
+use saoms_api::{Context, Failure};
+
+use super::leg::Urgency;
+use crate::grid::Block;
+use crate::hardware::{Action, ActionKind};
+use crate::messages::Standing;
+use crate::robot::HEARD;
+use crate::robot::RobotKnowledge;
+use crate::zone::Wish;
+
+impl RobotKnowledge {
+    /// Takes in what zones say.
+    ///
+    /// # Errors
+    /// The region of hearing cannot be set.
+    pub(in crate::robot) fn hear_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let RobotKnowledge { zones: Some(zones), routes, number, block, next, .. } = self else { return Ok(()) };
+        zones.enter(context, *number, *block);
+        zones.hear(context, routes.map());
+        if routes.map().is_some_and(|map| map.size() <= HEARD) { Ok(()) } else { zones.hear_around(context, *next) }
+    }
+
+    /// Sends what zones have to know.
+    ///
+    /// # Errors
+    /// The messages cannot be sent.
+    pub(in crate::robot) fn ask_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.zones.is_none() {
+            return Ok(());
+        }
+        self.aim_in_zones();
+        let begun = self.begun_blocks();
+        let wish = Wish {
+            goal: self.goal_in_zones(),
+            charger: self.charge_block,
+            rank: self.leg.priority(self.number).rank,
+            standing: self.standing(),
+        };
+        let Some(zones) = &mut self.zones else { return Ok(()) };
+        if wish.standing != Standing::MakesWay {
+            zones.stay(begun);
+        }
+        zones.ask(context, wish)
+    }
+
+    /// Tells zones that the robot cannot move any more.
+    ///
+    /// # Errors
+    /// The messages cannot be sent.
+    pub(in crate::robot) fn leave_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let (charger, begun) = (self.charge_block, self.begun_blocks());
+        let Some(zones) = &mut self.zones else { return Ok(()) };
+        zones.stay(begun);
+        zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost })
+    }
+
+    /// Releases blocks ahead that do not lead where the robot wants to go now.
+    pub(super) fn aim_in_zones(&mut self) {
+        let (goal, begun) = (self.goal_in_zones(), self.begun_blocks());
+        if let Some(zones) = &mut self.zones {
+            zones.aim(goal, begun);
+        }
+    }
+
+    /// True if the action is a move to a block that no zone granted yet. The robot then asks for it.
+    pub(in crate::robot) fn waits_for_grant(&mut self, action: Action) -> bool {
+        let Some(zones) = self.zones.as_mut().filter(|_| action.kind == ActionKind::Move) else { return false };
+        let waits = zones.next() != Some(action.block);
+        zones.asked = Some(action.block).filter(|_| waits);
+        waits
+    }
+
+    /// Number of blocks of its passage that it is on, or has begun to enter.
+    fn begun_blocks(&self) -> usize {
+        if self.hardware.is_moving() { 2 } else { 1 }
+    }
+
+    /// Where it wants to go; `None` if it wants to stay.
+    fn goal_in_zones(&mut self) -> Option<Block> {
+        let stays = self.is_bound() || self.job_here().is_some() || self.holds_charger();
+        let asked = self.zones.as_ref().and_then(|zones| zones.asked);
+        asked.or_else(|| self.leg.goal.filter(|_| self.leg.urgency != Urgency::None)).filter(|_| !stays)
+    }
+
+    fn standing(&mut self) -> Standing {
+        if self.shut_down || self.variables.critical || self.trouble.is_some() {
+            Standing::Lost
+        } else if self.is_bound() || self.job_here().is_some() || self.holds_charger() {
+            Standing::Stays
+        } else {
+            Standing::MakesWay
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Client of the zones of a robot's site, which grant it the blocks that it enters.
+
+use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
+
+use crate::grid::{Block, Map};
+use crate::messages::{GRANT, GRANT_REQUEST, Grant, GrantRequest, Step, TERRITORY, Territory};
+use crate::validation::MessageValidator;
+use crate::zone::{Held, Link, Passage, Wish};
+
+/// Number of executions after which the robot repeats a request that its zone did not confirm.
+const REPEAT: u32 = 8;
+
+/// Distance within which the robot hears grants, in blocks: they are sent to where the zone knows that it is.
+const HEARING: u32 = 12;
+
+/// Number of blocks that the robot drives before its region of hearing follows.
+const SLACK: u32 = 4;
+
+/// A robot's passage through zones, and the topics on which it speaks with them.
+#[derive(Debug)]
+pub(crate) struct ZoneClient {
+    /// `None` until the robot is on the floor.
+    passage: Option<Passage>,
+    territories: Subscription<Territory>,
+    grants: Subscription<Grant>,
+    requests: Publisher<GrantRequest>,
+    /// Zones and the components that speak for them.
+    validator: MessageValidator,
+    /// Number of executions since the last request.
+    silent: u32,
+    goal: Option<Block>,
+    /// Block to which a loop ordered the robot, and that is not granted yet.
+    pub(super) asked: Option<Block>,
+    hears_around: Option<Block>,
+}
+
+/// What a robot goes on from after a failure.
+#[derive(Clone, Debug, Field)]
+pub(crate) struct ZoneMemory {
+    incarnation: u64,
+    held: Vec<HeldMemory>,
+    links: Vec<LinkMemory>,
+    goal: Option<Block>,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct HeldMemory {
+    zone: u32,
+    step: Step,
+}
+
+#[derive(Clone, Debug, Field)]
+struct LinkMemory {
+    territory: Territory,
+    received: u64,
+    said: GrantRequest,
+    heard: u64,
+}
+
+impl ZoneClient {
+    /// The client of a robot whose site has zones.
+    ///
+    /// # Errors
+    /// The component cannot use the topics.
+    pub(crate) fn new(context: &mut Context<'_>) -> Result<Option<ZoneClient>, Failure> {
+        if context.publishers(&GRANT).is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(ZoneClient {
+            passage: None,
+            territories: context.subscribe(&TERRITORY)?,
+            grants: context.subscribe(&GRANT)?,
+            requests: context.publish(&GRANT_REQUEST)?,
+            validator: MessageValidator::default(),
+            silent: 0,
+            goal: None,
+            asked: None,
+            hears_around: None,
+        }))
+    }
+
+    pub(crate) fn memory(&self, passage: &Passage) -> ZoneMemory {
+        let held = passage.held().iter().map(|held| HeldMemory { zone: held.zone, step: held.step });
+        let links = passage.links().iter().map(|link| LinkMemory {
+            territory: link.territory.clone(),
+            received: link.received,
+            said: link.said.clone(),
+            heard: link.heard,
+        });
+        ZoneMemory { incarnation: passage.incarnation(), held: held.collect(), links: links.collect(), goal: self.goal }
+    }
+
+    /// The same while the robot is on the floor.
+    pub(crate) fn save(&self) -> Option<ZoneMemory> {
+        self.passage.as_ref().map(|passage| self.memory(passage))
+    }
+
+    pub(crate) fn restore(&mut self, robot: u32, memory: ZoneMemory) {
+        let held = memory.held.into_iter().map(|held| Held { zone: held.zone, step: held.step });
+        let links = memory.links.into_iter().map(|link| Link {
+            territory: link.territory,
+            received: link.received,
+            said: link.said,
+            heard: link.heard,
+        });
+        self.passage = Some(Passage::with(robot, memory.incarnation, held.collect(), links.collect()));
+        self.goal = memory.goal;
+    }
+
+    /// The robot enters the floor at a block, without memory of grants to an earlier incarnation of it.
+    pub(crate) fn enter(&mut self, context: &Context<'_>, robot: u32, block: Block) {
+        if self.passage.is_none() {
+            let born = context.date().unwrap_or_else(|| context.now().since(Time::START));
+            let incarnation = u64::try_from(born.as_nanos()).unwrap_or(u64::MAX);
+            self.passage = Some(Passage::new(robot, incarnation, block));
+        }
+    }
+
+    /// Takes in what zones say.
+    pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) {
+        let ZoneClient { passage: Some(passage), territories, grants, validator, .. } = self else { return };
+        for (header, territory) in context.receive(territories).with_headers() {
+            if validator.accepts(territory, header, area, context) {
+                passage.hear_territory(territory);
+                validator.expect_introductions();
+            }
+        }
+        for (header, grant) in context.receive(grants).with_headers() {
+            if grant.robot == passage.robot() && validator.accepts(grant, header, area, context) {
+                passage.hear(grant);
+            }
+        }
+    }
+
+    /// Hears grants around the robot alone, on a map where that saves something.
+    ///
+    /// # Errors
+    /// The region cannot be set.
+    pub(crate) fn hear_around(&mut self, context: &mut Context<'_>, block: Block) -> Result<(), Failure> {
+        if self.hears_around.is_some_and(|middle| middle.distance(block) <= SLACK) {
+            return Ok(());
+        }
+        self.hears_around = Some(block);
+        context.set_region(&self.grants, Some(Region::around((block.x, block.y), HEARING + SLACK)))
+    }
+
+    /// The block that the robot may enter next.
+    pub(crate) fn next(&self) -> Option<Block> {
+        self.passage.as_ref()?.next()
+    }
+
+    /// The robot is at a block, and leaves no other one.
+    pub(crate) fn arrive(&mut self, block: Block) {
+        if let Some(passage) = &mut self.passage {
+            passage.arrive(block);
+        }
+    }
+
+    /// The robot wants to go there, or nowhere. If it wanted to go elsewhere before, it releases its passage, but for
+    /// the first `begun` blocks, which it is on or has begun to enter. What was granted while it had no goal is to make
+    /// way for others.
+    pub(crate) fn aim(&mut self, goal: Option<Block>, begun: usize) {
+        let before = std::mem::replace(&mut self.goal, goal);
+        if let Some(passage) = &mut self.passage
+            && before.is_some()
+            && goal.is_some()
+            && goal != before
+        {
+            passage.give_back(begun);
+        }
+    }
+
+    /// The robot stays where it is, or where it has begun to go: it releases the rest of its passage.
+    pub(crate) fn stay(&mut self, begun: usize) {
+        if let Some(passage) = &mut self.passage {
+            passage.give_back(begun);
+        }
+    }
+
+    /// Sends what changed, or what was not confirmed for long.
+    ///
+    /// # Errors
+    /// The messages cannot be sent.
+    pub(crate) fn ask(&mut self, context: &mut Context<'_>, wish: Wish) -> Result<(), Failure> {
+        let Some(passage) = &mut self.passage else { return Ok(()) };
+        self.silent = self.silent.saturating_add(1);
+        let again = self.silent >= REPEAT;
+        let requests = passage.requests(wish, again);
+        if again || !requests.is_empty() {
+            self.silent = 0;
+        }
+        for request in requests {
+            context.send(&self.requests, request)?;
+        }
+        Ok(())
+    }
+}

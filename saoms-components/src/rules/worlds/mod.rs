@@ -1,0 +1,5 @@
+//! Rules about worlds.
+
+pub(super) mod mixed;
+pub(super) mod slow;
+pub(super) mod unused;

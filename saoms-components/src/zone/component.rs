@@ -1,0 +1,281 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use saoms_api::{
+    CallError, Cause, Class, Component, Context, Failure, Header, KnownPublisher, Publisher, ReportValue, Subscription,
+    record, warn,
+};
+
+use super::ground::Ground;
+use super::ledger::{Heard, Ledger, Member};
+use super::maneuver::Maneuver;
+use super::properties::ZoneProperties;
+use super::{memory, plan};
+use crate::grid::{Block, Map};
+use crate::hardware::HardwareReference;
+use crate::messages::{FAULT, Fault, FaultKind, GRANT, GRANT_REQUEST, Grant, GrantRequest, TERRITORY, Territory};
+use crate::validation::MessageValidator;
+
+/// Number of executions after which the zone repeats what was not confirmed.
+const REPEAT: u64 = 8;
+
+/// Number of executions after which it confirms what it need not answer otherwise.
+const CONFIRM: u64 = 4;
+
+/// Number of executions without grants after which the zone says for whom it waits.
+const CLOSED: u64 = 20;
+
+/// Grants robots the passage through its blocks.
+///
+/// Robots of its site enter a block only with a grant of the zone in which it lies. A grant is a message that holds
+/// until the robot says that it has left the block; no timeout ends it. So no two robots share a block or exchange
+/// their blocks, however late messages are and whichever component fails.
+#[derive(Debug, Class)]
+#[class(name = "saoms.Zone", periodic, reference("world": crate::hardware::Hardware, optional))]
+pub struct Zone {
+    properties: ZoneProperties,
+    hardware: HardwareReference,
+    state: Option<State>,
+    validator: MessageValidator,
+    /// Components whose robots have said where they are, until the zone grants.
+    heard: BTreeSet<u32>,
+    /// Robots that somebody took off the floor, until the zone grants.
+    gone: BTreeSet<u32>,
+    /// True if the zone grants: all robots have said where they are.
+    open: bool,
+    /// Robots with an unconfirmed request, and the execution in which that is confirmed at the latest.
+    unconfirmed: BTreeMap<u32, u64>,
+    #[subscribes(GRANT_REQUEST)]
+    requests: Subscription<GrantRequest>,
+    #[subscribes(FAULT)]
+    faults: Subscription<Fault>,
+    #[publishes(GRANT)]
+    grants: Publisher<Grant>,
+    #[publishes(TERRITORY)]
+    territories: Publisher<Territory>,
+}
+
+/// The record of the grants, and the map.
+#[derive(Debug)]
+struct State {
+    ledger: Ledger,
+    maneuvers: Vec<Maneuver>,
+    ground: Ground,
+}
+
+impl Component for Zone {
+    type Properties = ZoneProperties;
+
+    fn new(properties: ZoneProperties) -> Result<Self, Failure> {
+        if let Some(map) = properties.map().map_err(Failure::of_findings)? {
+            properties.territory(1, &map).map_err(|finding| Failure::from(*finding))?;
+        }
+        Ok(Zone {
+            properties,
+            hardware: HardwareReference::default(),
+            state: None,
+            validator: MessageValidator::default(),
+            heard: BTreeSet::new(),
+            gone: BTreeSet::new(),
+            open: false,
+            unconfirmed: BTreeMap::new(),
+            requests: Subscription::default(),
+            faults: Subscription::default(),
+            grants: Publisher::default(),
+            territories: Publisher::default(),
+        })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.hardware = context.reference("world")?;
+        self.begin(context)
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.begin(context)?;
+        let Some(mut state) = self.state.take() else { return Ok(()) };
+        let result = self.serve(&mut state, context);
+        self.state = Some(state);
+        result
+    }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        let count = |number: usize| ReportValue::from(i64::try_from(number).unwrap_or(i64::MAX));
+        let members = || self.state.iter().flat_map(|state| state.ledger.members().values());
+        ReportValue::named([
+            ("robots", count(members().filter(|member| !member.steps.is_empty()).count())),
+            ("held", count(members().map(|member| member.steps.len()).sum())),
+            ("waiting", count(members().filter(|member| member.waited > 0).count())),
+            ("open", self.open.into()),
+        ])
+    }
+
+    fn waits_for(&self) -> Option<String> {
+        Some("requests of robots".to_owned())
+    }
+}
+
+impl Zone {
+    /// Learns the map and the grants that it kept, unless it knows them.
+    fn begin(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.state.is_some() {
+            return Ok(());
+        }
+        let Some(map) = self.map(context)? else { return Ok(()) };
+        let kept = memory::from_bytes(context.kept().1)?;
+        let term = context.date().unwrap_or_else(|| context.now().since(saoms_api::Time::START));
+        let term = u64::try_from(term.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
+        let territory = self.properties.territory(term, &map).map_err(|finding| Failure::from(*finding))?;
+        let ledger = match kept {
+            Some((ledger, true)) if is_same(ledger.territory(), &territory) => {
+                self.open = true;
+                ledger
+            }
+            _ => Ledger::new(territory),
+        };
+        context.send(&self.territories, ledger.territory().clone())?;
+        self.state = Some(State { ledger, maneuvers: Vec::new(), ground: Ground::new(map) });
+        Ok(())
+    }
+
+    /// The map of the world, or of the property; `None` while the world cannot be reached.
+    fn map(&self, context: &mut Context<'_>) -> Result<Option<Map>, Failure> {
+        if !context.is_wired(&self.hardware) {
+            let map = self.properties.map().map_err(Failure::of_findings)?;
+            return map.map(Some).ok_or_else(|| {
+                Failure::new("the zone has no map: wire its reference `world` to a world, or give it `map`")
+            });
+        }
+        match self.hardware.area(context) {
+            Ok(area) => {
+                let map: Option<Map> = area.into();
+                map.map(Some).ok_or_else(|| Failure::new("the world's map does not match its width and height"))
+            }
+            Err(CallError::Busy { .. } | CallError::NotRunning { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn serve(&mut self, state: &mut State, context: &mut Context<'_>) -> Result<(), Failure> {
+        let mut changed = self.hear(state, context);
+        changed |= self.hear_gone(state, context);
+        if !self.is_open(state, context)? {
+            return if changed { self.keep(state, context) } else { Ok(()) };
+        }
+        let mut told = self.plan(state);
+        changed |= !told.is_empty();
+        let execution = context.execution();
+        self.unconfirmed.retain(|robot, due| {
+            let is_due = *due <= execution;
+            if is_due {
+                told.insert(*robot);
+            }
+            !is_due && !told.contains(robot)
+        });
+        if execution.is_multiple_of(REPEAT) {
+            let unheard = |member: &Member| member.granted > member.request.received && !member.steps.is_empty();
+            told.extend(state.ledger.members().iter().filter(|(_, member)| unheard(member)).map(|(robot, _)| *robot));
+        }
+        if changed {
+            self.keep(state, context)?;
+        }
+        for grant in told.iter().filter_map(|robot| state.ledger.message(*robot)) {
+            context.send(&self.grants, grant)?;
+        }
+        Ok(())
+    }
+
+    /// Keeps the record, before the messages of this execution leave.
+    fn keep(&self, state: &State, context: &mut Context<'_>) -> Result<(), Failure> {
+        let kept = memory::to_bytes(&state.ledger, self.open);
+        context.keep(kept.bytes()).map(|_| ())
+    }
+
+    /// Takes in what robots ask for.
+    fn hear(&mut self, state: &mut State, context: &mut Context<'_>) -> bool {
+        let mut changed = false;
+        let State { ledger, ground, .. } = state;
+        for (header, request) in context.receive(&self.requests).with_headers() {
+            let is_here = request.zone == ledger.territory().zone && request.term == ledger.territory().term;
+            if !is_here || !self.validator.accepts(request, header, Some(ground.map()), context) {
+                continue;
+            }
+            if !self.open {
+                self.heard.insert(header.sender);
+            }
+            let heard = ledger.hear(request);
+            if let Heard::Conflict { block, other } = heard {
+                let robot = request.robot;
+                warn!(context, "robot {robot} is at {block}, which was granted to robot {other}");
+                context.effect(record!(grant_conflict: "robot {robot} is on a block of robot {other}", robot, other));
+            }
+            changed |= heard != Heard::Nothing;
+            self.unconfirmed.entry(request.robot).or_insert(context.execution() + CONFIRM);
+        }
+        changed
+    }
+
+    /// Frees the blocks of robots that somebody took off the floor.
+    fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> bool {
+        let mut changed = false;
+        for fault in context.receive(&self.faults).filter(|fault| fault.kind == FaultKind::Gone) {
+            state.ledger.forget(fault.robot);
+            if !self.open {
+                self.gone.insert(fault.robot);
+            }
+            changed = true;
+        }
+        changed
+    }
+
+    /// True if all robots of the fleet have said where they are. Else the zone asks them, and says for whom it waits.
+    fn is_open(&mut self, state: &State, context: &mut Context<'_>) -> Result<bool, Failure> {
+        if self.open {
+            return Ok(true);
+        }
+        let begun = context.publishers(&GRANT_REQUEST).into_iter().filter(|publisher| publisher.has_begun);
+        let is_gone = |number: Option<u32>| number.is_some_and(|robot| self.gone.contains(&robot));
+        let unheard: Vec<KnownPublisher> =
+            begun.filter(|one| !self.heard.contains(&one.sender) && !is_gone(one.number)).collect();
+        if unheard.is_empty() {
+            self.open = true;
+            (self.heard, self.gone) = (BTreeSet::new(), BTreeSet::new());
+            self.keep(state, context)?;
+            context.alert_over("closed", "");
+            return Ok(true);
+        }
+        if context.execution().is_multiple_of(REPEAT) {
+            context.send(&self.territories, state.ledger.territory().clone())?;
+        }
+        if context.execution() == CLOSED {
+            let (sent, cause) = (context.now(), Cause::default());
+            let header = |one: &KnownPublisher| Header { sender: one.sender, sent, cause };
+            let names: Vec<&str> = unheard.iter().filter_map(|one| context.sender_name(header(one))).collect();
+            let names = names.join(", ");
+            context.alert(
+                "closed",
+                "",
+                format_args!(
+                    "grants nothing: it waits for robots to say where they are: {names}; if one is not on the floor, send \
+                     `gone` for it"
+                ),
+            );
+        }
+        Ok(false)
+    }
+
+    /// Plans a round, if a robot wants to go somewhere.
+    fn plan(&self, state: &mut State) -> BTreeSet<u32> {
+        let State { ledger, maneuvers, ground } = state;
+        let lost = ledger.members().values().filter(|member| member.is_obstacle());
+        let obstacles: Vec<Block> = lost.flat_map(|member| member.steps.iter().map(|step| step.block)).collect();
+        ground.begin_round(obstacles, ledger.members().values().map(|member| member.request.charger));
+        let granted = plan::plan(ledger, maneuvers, ground, self.properties.ahead as usize);
+        ledger.end_round();
+        granted
+    }
+}
+
+/// True if two territories have the same blocks.
+fn is_same(one: &Territory, other: &Territory) -> bool {
+    (one.zone, one.corner, one.width, one.height) == (other.zone, other.corner, other.width, other.height)
+}

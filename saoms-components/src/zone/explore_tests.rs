@@ -1,0 +1,391 @@
+//! Exhaustive exploration of the protocol between zones and robots: every order of sending, losing, repeating and
+//! delivering messages, of moves, and of crashes, on tiny maps.
+//!
+//! In each state that can be reached no two robots hold the same block, and from each state all robots can still reach
+//! their goals.
+
+use std::collections::{BTreeSet, HashMap};
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+
+use super::ground::Ground;
+use super::ledger::Ledger;
+use super::maneuver::Maneuver;
+use super::passage::{Passage, Wish};
+use super::plan::plan;
+use crate::grid::{Block, Map};
+use crate::messages::{Grant, GrantRequest, Standing, Territory};
+
+type Spot = (i32, i32);
+
+/// A fleet to explore.
+struct Scenario {
+    name: &'static str,
+    map: &'static str,
+    /// First column and number of columns of each zone.
+    zones: &'static [(i32, u32)],
+    /// Start and goal of each robot.
+    robots: &'static [(Spot, Spot)],
+    faults: Faults,
+    /// Number of blocks that are granted ahead.
+    ahead: usize,
+    /// Number up to which rounds of waiting are told apart: 0 where no maneuver is needed.
+    waits: u32,
+}
+
+/// Faults that may still happen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Faults {
+    losses: u8,
+    repetitions: u8,
+    /// Crashes of robots that lose their memory.
+    robots: u8,
+    /// Crashes of zones that lose their record.
+    zones: u8,
+}
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct State {
+    zones: Vec<Zone>,
+    robots: Vec<Robot>,
+    /// Messages on their way, each once, sorted by their hash.
+    network: Vec<Message>,
+    faults: Faults,
+}
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Zone {
+    ledger: Ledger,
+    maneuvers: Vec<Maneuver>,
+    /// Robots that did not answer in this term.
+    unheard: BTreeSet<u32>,
+}
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Robot {
+    passage: Passage,
+    at: Block,
+    moving: Option<Block>,
+    goal: Block,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Message {
+    /// To this robot.
+    Territory(u32, Territory),
+    Request(GrantRequest),
+    Grant(Grant),
+}
+
+impl Message {
+    /// Order of the messages of a link.
+    fn age(&self) -> (u64, u64) {
+        match self {
+            Message::Territory(_, territory) => (territory.term, 0),
+            Message::Request(request) => (request.incarnation, request.number),
+            Message::Grant(grant) => (grant.heard, grant.steps.last().map_or(0, |step| step.number)),
+        }
+    }
+}
+
+fn hash(of: &impl std::hash::Hash) -> u64 {
+    BuildHasherDefault::<DefaultHasher>::default().hash_one(of)
+}
+
+impl Scenario {
+    fn start(&self) -> State {
+        let height = u32::try_from(self.map.trim().lines().count()).unwrap();
+        let robots: BTreeSet<u32> = (1..).take(self.robots.len()).collect();
+        let zones = self.zones.iter().zip(1..).map(|(&(x, width), zone)| Zone {
+            ledger: Ledger::new(Territory { zone, term: 1, corner: Block::new(x, 0), width, height }),
+            maneuvers: Vec::new(),
+            unheard: robots.clone(),
+        });
+        let fleet = self.robots.iter().zip(1..).map(|(&(at, goal), robot)| {
+            let (at, goal) = (Block::new(at.0, at.1), Block::new(goal.0, goal.1));
+            Robot { passage: Passage::new(robot, 1, at), at, moving: None, goal }
+        });
+        let mut state =
+            State { zones: zones.collect(), robots: fleet.collect(), network: Vec::new(), faults: self.faults };
+        for zone in 0..state.zones.len() {
+            let territory = state.zones[zone].ledger.territory().clone();
+            state.robots.iter_mut().for_each(|robot| robot.passage.hear_territory(&territory));
+        }
+        (0..state.robots.len()).for_each(|robot| state.request(robot, false));
+        for message in std::mem::take(&mut state.network) {
+            let Message::Request(request) = message else { continue };
+            let zone = &mut state.zones[request.zone as usize - 1];
+            zone.ledger.hear(&request);
+            zone.unheard.remove(&request.robot);
+        }
+        state
+    }
+
+    /// Explores all states, and returns their number.
+    fn explore(&self) -> usize {
+        let mut ground = Ground::new(Map::read(self.map).unwrap());
+        let mut known: HashMap<u64, u32> = HashMap::new();
+        let mut before: Vec<Vec<u32>> = Vec::new();
+        let mut done: Vec<u32> = Vec::new();
+        let mut open = Vec::new();
+        let start = self.start();
+        known.insert(hash(&start), 0);
+        before.push(Vec::new());
+        open.push((0, start));
+        while let Some((number, state)) = open.pop() {
+            state.check(self.name);
+            if state.robots.iter().all(|robot| robot.at == robot.goal && robot.moving.is_none()) {
+                done.push(number);
+            }
+            for next in state.successors(&mut ground, self) {
+                let place = *known.entry(hash(&next)).or_insert_with(|| {
+                    let place = u32::try_from(before.len()).unwrap();
+                    before.push(Vec::new());
+                    open.push((place, next));
+                    place
+                });
+                before[place as usize].push(number);
+            }
+            assert!(before.len() < 400_000, "{}: too many states", self.name);
+        }
+        // Each state leads to one in which all robots are at their goals.
+        let mut leads = vec![false; before.len()];
+        while let Some(number) = done.pop() {
+            if !std::mem::replace(&mut leads[number as usize], true) {
+                done.extend(&before[number as usize]);
+            }
+        }
+        let lost = leads.iter().filter(|leads| !**leads).count();
+        assert_eq!(lost, 0, "{}: of {} states, {lost} do not lead to the goals", self.name, before.len());
+        before.len()
+    }
+}
+
+impl State {
+    /// No two robots hold the same block, and each holds only what its zone knows.
+    fn check(&self, name: &str) {
+        let held = self.robots.iter().flat_map(|robot| [Some(robot.at), robot.moving].into_iter().flatten());
+        let mut blocks: Vec<Block> = held.collect();
+        let all = blocks.len();
+        blocks.sort_unstable();
+        blocks.dedup();
+        assert_eq!(blocks.len(), all, "{name}: robots collide");
+    }
+
+    /// A message can be overtaken by one newer message of the same link, as on a topic that keeps the newest.
+    fn send(&mut self, message: Message) {
+        let key = hash(&message);
+        let same = |other: &Message| match (other, &message) {
+            (Message::Territory(one, a), Message::Territory(other, b)) => one == other && a.zone == b.zone,
+            (Message::Request(one), Message::Request(other)) => one.link == other.link,
+            (Message::Grant(one), Message::Grant(other)) => one.link == other.link,
+            _ => false,
+        };
+        let earlier = self.network.iter().filter(|other| same(other)).min_by_key(|other| other.age()).cloned();
+        if let Some(earlier) = earlier
+            && self.network.iter().filter(|other| same(other)).count() > 1
+        {
+            self.network.retain(|other| *other != earlier);
+        }
+        if let Err(place) = self.network.binary_search_by_key(&key, hash) {
+            self.network.insert(place, message);
+        }
+    }
+
+    fn announce(&mut self, zone: usize) {
+        let territory = self.zones[zone].ledger.territory().clone();
+        for robot in self.zones[zone].unheard.clone() {
+            self.send(Message::Territory(robot, territory.clone()));
+        }
+    }
+
+    fn request(&mut self, robot: usize, again: bool) {
+        let one = &mut self.robots[robot];
+        let rank = u64::try_from(robot).unwrap();
+        let goal = Some(one.goal).filter(|goal| *goal != one.passage.end());
+        let wish = Wish {
+            goal,
+            charger: one.goal,
+            rank: if goal.is_some() { 10 - rank } else { 0 },
+            standing: Standing::MakesWay,
+        };
+        for request in one.passage.requests(wish, again) {
+            self.send(Message::Request(request));
+        }
+    }
+
+    fn plan(&mut self, zone: usize, again: bool, ground: &mut Ground, rules: &Scenario) {
+        let one = &mut self.zones[zone];
+        if !one.unheard.is_empty() {
+            return self.announce(zone);
+        }
+        let mut told = plan(&mut one.ledger, &mut one.maneuvers, ground, rules.ahead);
+        let robots: Vec<u32> = one.ledger.members().keys().copied().collect();
+        for robot in &robots {
+            let waited = &mut one.ledger.member_mut(*robot).unwrap().waited;
+            if *waited > rules.waits {
+                // The next round looks for a maneuver again.
+                *waited = rules.waits.saturating_sub(1);
+            }
+        }
+        if again {
+            told.extend(robots);
+        }
+        let grants: Vec<Grant> = told.iter().filter_map(|robot| one.ledger.message(*robot)).collect();
+        grants.into_iter().for_each(|grant| self.send(Message::Grant(grant)));
+    }
+
+    fn deliver(&mut self, message: &Message, ground: &mut Ground, rules: &Scenario) {
+        match message {
+            Message::Territory(robot, territory) => {
+                let robot = *robot as usize - 1;
+                self.robots[robot].passage.hear_territory(territory);
+                self.request(robot, false);
+            }
+            Message::Grant(grant) => {
+                let robot = grant.robot as usize - 1;
+                let one = &mut self.robots[robot];
+                one.passage.hear(grant);
+                one.moving = one.moving.or_else(|| one.passage.next());
+                self.request(robot, false);
+            }
+            Message::Request(request) => {
+                let zone = request.zone as usize - 1;
+                self.zones[zone].ledger.hear(request);
+                if request.term == self.zones[zone].ledger.territory().term {
+                    self.zones[zone].unheard.remove(&request.robot);
+                }
+                self.plan(zone, false, ground, rules);
+            }
+        }
+    }
+
+    fn successors(&self, ground: &mut Ground, rules: &Scenario) -> Vec<State> {
+        let mut all = Vec::new();
+        for place in 0..self.network.len() {
+            let mut next = self.clone();
+            let message = next.network.remove(place);
+            if self.faults.losses > 0 {
+                let mut lost = next.clone();
+                lost.faults.losses -= 1;
+                all.push(lost);
+            }
+            if self.faults.repetitions > 0 {
+                let mut twice = self.clone();
+                twice.faults.repetitions -= 1;
+                twice.deliver(&message, ground, rules);
+                all.push(twice);
+            }
+            next.deliver(&message, ground, rules);
+            all.push(next);
+        }
+        for robot in 0..self.robots.len() {
+            let mut next = self.clone();
+            let one = &mut next.robots[robot];
+            if let Some(to) = one.moving.take() {
+                one.at = to;
+                one.passage.arrive(to);
+                one.moving = one.passage.next();
+                next.request(robot, false);
+                all.push(next);
+            }
+            if self.faults.robots > 0 {
+                let mut crashed = self.clone();
+                crashed.faults.robots -= 1;
+                let one = &mut crashed.robots[robot];
+                one.moving = None;
+                one.passage = Passage::new(one.passage.robot(), one.passage.incarnation() + 1, one.at);
+                // State topics give it the territories again.
+                for zone in &self.zones {
+                    one.passage.hear_territory(zone.ledger.territory());
+                }
+                crashed.request(robot, false);
+                all.push(crashed);
+            }
+        }
+        // What was lost is sent again, once nothing is on its way.
+        if self.network.is_empty() {
+            let mut next = self.clone();
+            (0..self.robots.len()).for_each(|robot| next.request(robot, true));
+            (0..self.zones.len()).for_each(|zone| next.plan(zone, true, ground, rules));
+            all.push(next);
+        }
+        if self.faults.zones > 0 {
+            for zone in 0..self.zones.len() {
+                let mut crashed = self.clone();
+                crashed.faults.zones -= 1;
+                let territory = self.zones[zone].ledger.territory().clone();
+                let term = territory.term + 1;
+                crashed.zones[zone].ledger = Ledger::new(Territory { term, ..territory });
+                crashed.zones[zone].maneuvers.clear();
+                crashed.zones[zone].unheard = (1..).take(self.robots.len()).collect();
+                crashed.announce(zone);
+                all.push(crashed);
+            }
+        }
+        all
+    }
+}
+
+/// Two robots that exchange their places on a square.
+const SQUARE: Scenario = Scenario {
+    name: "square",
+    map: "..\n..",
+    zones: &[(0, 2)],
+    robots: &[((0, 0), (1, 1)), ((1, 1), (0, 0))],
+    faults: NONE,
+    ahead: 1,
+    waits: 0,
+};
+
+/// Two robots that have to pass each other beside a single block.
+const BAY: Scenario = Scenario {
+    name: "bay",
+    map: "...\n@.@",
+    robots: &[((0, 0), (2, 0)), ((2, 0), (0, 0))],
+    zones: &[(0, 3)],
+    waits: 4,
+    ..SQUARE
+};
+
+/// A robot that drives from one zone to the other.
+const BORDER: Scenario =
+    Scenario { name: "border", map: "...", zones: &[(0, 2), (2, 1)], robots: &[((0, 0), (2, 0))], ..SQUARE };
+
+const NONE: Faults = Faults { losses: 0, repetitions: 0, robots: 0, zones: 0 };
+
+fn explore(scenarios: &[Scenario]) {
+    for scenario in scenarios {
+        let states = scenario.explore();
+        println!("{}, {:?}: {states} states", scenario.name, scenario.faults);
+    }
+}
+
+#[test]
+fn messages_that_are_lost_or_come_twice_lead_to_no_collision_and_no_standstill() {
+    explore(&[
+        Scenario { faults: Faults { losses: 1, ..NONE }, ..SQUARE },
+        Scenario { faults: Faults { repetitions: 1, ..NONE }, ..SQUARE },
+        Scenario { faults: Faults { losses: 2, repetitions: 1, ..NONE }, ..BORDER },
+        Scenario { faults: Faults { losses: 1, ..NONE }, ..BAY },
+    ]);
+}
+
+#[test]
+fn robots_that_lose_their_memory_lead_to_no_collision_and_no_standstill() {
+    explore(&[
+        Scenario { faults: Faults { robots: 1, ..NONE }, ..SQUARE },
+        Scenario { faults: Faults { losses: 1, robots: 1, ..NONE }, ..BORDER },
+    ]);
+}
+
+#[test]
+fn zones_that_lose_their_record_lead_to_no_collision_and_no_standstill() {
+    explore(&[
+        Scenario {
+            robots: &[((0, 0), (1, 1))],
+            faults: Faults { losses: 1, repetitions: 1, zones: 1, ..NONE },
+            ..SQUARE
+        },
+        Scenario { faults: Faults { zones: 1, ..NONE }, ..BORDER },
+    ]);
+}

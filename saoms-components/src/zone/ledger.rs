@@ -1,0 +1,216 @@
+use std::collections::BTreeMap;
+
+use crate::grid::Block;
+use crate::messages::{Grant, GrantRequest, Standing, Step, Territory, link};
+
+/// A zone's record of grants: which robot holds which of its blocks.
+///
+/// It is the part of the protocol on which safety rests: a block is granted only while no robot holds it, and a robot
+/// holds it until it has said that it released it. It has no clock and no chance.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Ledger {
+    territory: Territory,
+    members: BTreeMap<u32, Member>,
+    /// The robot that holds each block of the territory, row by row; 0 for none.
+    holders: Vec<u32>,
+}
+
+/// Number of rounds after which a robot that could go on, and says nothing, counts as an obstacle.
+const SILENT: u32 = 200;
+
+/// A robot, as a zone knows it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Member {
+    /// Its newest request.
+    pub(crate) request: GrantRequest,
+    /// Steps that were granted and not released, in their order.
+    pub(crate) steps: Vec<Step>,
+    /// Number of the last step that was granted.
+    pub(crate) granted: u64,
+    /// Number of rounds of planning in which it wanted to go on, and its passage did not grow.
+    pub(crate) waited: u32,
+    /// Number of rounds of planning in which it did not say anything new, although it could go on.
+    pub(crate) silent: u32,
+}
+
+impl Member {
+    /// End of the robot's passage: of the steps of this zone, else where the robot says that it is.
+    pub(crate) fn end(&self) -> Block {
+        self.steps.last().map_or(self.request.end, |step| step.block)
+    }
+
+    /// True if others have to drive around it: it cannot move any more, or could go on and says nothing for long.
+    pub(crate) fn is_obstacle(&self) -> bool {
+        self.request.standing == Standing::Lost || self.silent > SILENT
+    }
+
+    /// True if it wants to go somewhere else.
+    pub(crate) fn wants_to_go(&self) -> bool {
+        self.request.standing == Standing::MakesWay && self.request.goal != self.end()
+    }
+}
+
+/// What a request meant to a zone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Heard {
+    /// It said nothing new, or is of an earlier time.
+    Nothing,
+    /// It changed what the zone knows.
+    News,
+    /// It holds a block that the zone granted to another robot: somebody put it there.
+    Conflict {
+        /// The block.
+        block: Block,
+        /// The robot to which it was granted.
+        other: u32,
+    },
+}
+
+impl Ledger {
+    /// The record of a zone that granted nothing yet.
+    pub(crate) fn new(territory: Territory) -> Ledger {
+        let size = territory.width as usize * territory.height as usize;
+        Ledger { territory, members: BTreeMap::new(), holders: vec![0; size] }
+    }
+
+    /// The same record as an earlier one.
+    pub(crate) fn with(territory: Territory, members: BTreeMap<u32, Member>) -> Ledger {
+        let mut ledger = Ledger { members, ..Ledger::new(territory) };
+        let held: Vec<(Block, u32)> = ledger
+            .members
+            .iter()
+            .flat_map(|(robot, member)| member.steps.iter().map(|step| (step.block, *robot)))
+            .collect();
+        held.into_iter().for_each(|(block, robot)| ledger.hold(block, robot));
+        ledger
+    }
+
+    pub(crate) fn territory(&self) -> &Territory {
+        &self.territory
+    }
+
+    pub(crate) fn members(&self) -> &BTreeMap<u32, Member> {
+        &self.members
+    }
+
+    pub(crate) fn member(&self, robot: u32) -> Option<&Member> {
+        self.members.get(&robot)
+    }
+
+    pub(crate) fn member_mut(&mut self, robot: u32) -> Option<&mut Member> {
+        self.members.get_mut(&robot)
+    }
+
+    fn place(&self, block: Block) -> Option<usize> {
+        let Territory { corner, width, .. } = self.territory;
+        let (x, y) = (block.x.checked_sub(corner.x)?, block.y.checked_sub(corner.y)?);
+        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+        (x < width as usize).then(|| y * width as usize + x).filter(|place| *place < self.holders.len())
+    }
+
+    /// The robot that holds a block of the territory.
+    pub(crate) fn holder(&self, block: Block) -> Option<u32> {
+        self.place(block).map(|place| self.holders[place]).filter(|robot| *robot != 0)
+    }
+
+    fn hold(&mut self, block: Block, robot: u32) {
+        if let Some(place) = self.place(block)
+            && self.holders[place] == 0
+        {
+            self.holders[place] = robot;
+        }
+    }
+
+    /// Frees a block, or gives it to another robot that stands there.
+    fn free(&mut self, block: Block, robot: u32) {
+        let Some(place) = self.place(block).filter(|place| self.holders[*place] == robot) else { return };
+        let stands_there = |(_, member): &(&u32, &Member)| member.steps.iter().any(|step| step.block == block);
+        self.holders[place] = self.members.iter().find(stands_there).map_or(0, |(other, _)| *other);
+    }
+
+    /// Takes in a request.
+    pub(crate) fn hear(&mut self, request: &GrantRequest) -> Heard {
+        if request.zone != self.territory.zone || request.term != self.territory.term || request.robot == 0 {
+            return Heard::Nothing;
+        }
+        match self.members.get(&request.robot) {
+            Some(known) if request.incarnation < known.request.incarnation => Heard::Nothing,
+            Some(known) if request.incarnation == known.request.incarnation => self.hear_again(request),
+            _ => self.adopt(request),
+        }
+    }
+
+    /// Takes in a request of a robot that is known.
+    fn hear_again(&mut self, request: &GrantRequest) -> Heard {
+        let Some(member) = self.members.get_mut(&request.robot) else { return Heard::Nothing };
+        let is_held = |step: &Step| step.number > request.received || request.held.contains(step);
+        let (kept, released): (Vec<Step>, Vec<Step>) = member.steps.iter().partition(|step| is_held(step));
+        member.steps = kept;
+        member.silent = 0;
+        let is_newer = request.number > member.request.number;
+        if is_newer {
+            member.request = request.clone();
+        }
+        for step in &released {
+            self.free(step.block, request.robot);
+        }
+        if is_newer || !released.is_empty() { Heard::News } else { Heard::Nothing }
+    }
+
+    /// Takes in the first request of a robot, or of its new incarnation: the earlier one holds nothing any more.
+    fn adopt(&mut self, request: &GrantRequest) -> Heard {
+        self.forget(request.robot);
+        let steps: Vec<Step> =
+            request.held.iter().copied().filter(|step| self.territory.contains(step.block)).collect();
+        let other = |step: &Step| self.holder(step.block).map(|other| Heard::Conflict { block: step.block, other });
+        let conflict = steps.iter().find_map(other);
+        for step in &steps {
+            self.hold(step.block, request.robot);
+        }
+        let granted = steps.iter().map(|step| step.number).max().unwrap_or(0).max(request.received);
+        self.members.insert(request.robot, Member { request: request.clone(), steps, granted, waited: 0, silent: 0 });
+        conflict.unwrap_or(Heard::News)
+    }
+
+    /// Counts the round for robots that could go on and say nothing.
+    pub(crate) fn end_round(&mut self) {
+        for member in self.members.values_mut().filter(|member| member.steps.len() > 1) {
+            member.silent = member.silent.saturating_add(1);
+        }
+    }
+
+    /// Forgets a robot, which is off the floor; its blocks are free.
+    pub(crate) fn forget(&mut self, robot: u32) {
+        let Some(member) = self.members.remove(&robot) else { return };
+        for step in &member.steps {
+            self.free(step.block, robot);
+        }
+    }
+
+    /// Grants a block of the territory to a robot; `false` if a robot holds it.
+    pub(crate) fn grant(&mut self, robot: u32, block: Block) -> bool {
+        let Some(place) = self.place(block).filter(|place| self.holders[*place] == 0) else { return false };
+        let Some(member) = self.members.get_mut(&robot) else { return false };
+        self.holders[place] = robot;
+        member.granted += 1;
+        member.steps.push(Step { number: member.granted, block });
+        member.waited = 0;
+        true
+    }
+
+    /// The message that tells a robot what is granted to it.
+    pub(crate) fn message(&self, robot: u32) -> Option<Grant> {
+        let Member { request, steps, .. } = self.members.get(&robot)?;
+        let Territory { zone, term, .. } = self.territory;
+        Some(Grant {
+            link: link(zone, robot),
+            zone,
+            term,
+            robot,
+            incarnation: request.incarnation,
+            heard: request.number,
+            block: request.block,
+            steps: steps.clone(),
+        })
+    }
+}

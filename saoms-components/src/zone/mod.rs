@@ -1,0 +1,21 @@
+//! Zones: passage through the blocks of a map, granted to robots.
+//!
+//! `docs/zones.md` describes the protocol, and why it is safe. `Ledger` is a zone's part of it, `Passage` a robot's;
+//! both are state machines without clock and chance. `plan` decides which robot is granted which block.
+
+mod component;
+mod ground;
+mod ledger;
+mod maneuver;
+mod memory;
+mod passage;
+mod plan;
+mod properties;
+
+#[cfg(test)]
+mod explore_tests;
+
+pub use component::Zone;
+pub use properties::ZoneProperties;
+
+pub(crate) use passage::{Held, Link, Passage, Wish};

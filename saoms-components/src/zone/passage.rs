@@ -1,0 +1,186 @@
+use crate::grid::Block;
+use crate::messages::{Grant, GrantRequest, Standing, Step, Territory, link};
+
+/// The blocks that a robot may enter: its part of the protocol.
+///
+/// The first block is the one where the robot is. It enters the second one only because a zone granted it, and releases
+/// the first one when it has left it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Passage {
+    robot: u32,
+    incarnation: u64,
+    held: Vec<Held>,
+    links: Vec<Link>,
+}
+
+/// A block that the robot holds, with the zone that granted it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Held {
+    /// Number of the zone; 0 for a block whose zone is not known yet.
+    pub(crate) zone: u32,
+    pub(crate) step: Step,
+}
+
+/// What the robot and one zone know of each other.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Link {
+    pub(crate) territory: Territory,
+    /// Highest number of a step that was received.
+    pub(crate) received: u64,
+    /// The newest request.
+    pub(crate) said: GrantRequest,
+    /// Number of the newest request that the zone took in.
+    pub(crate) heard: u64,
+}
+
+/// Where a robot wants to go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wish {
+    /// Block where it wants to go; `None` if it wants to stay.
+    pub(crate) goal: Option<Block>,
+    /// Block of its charger.
+    pub(crate) charger: Block,
+    /// Rank of its way.
+    pub(crate) rank: u64,
+    /// What it does when another robot wants its block.
+    pub(crate) standing: Standing,
+}
+
+impl Passage {
+    /// The passage of a robot that enters the floor at a block.
+    pub(crate) fn new(robot: u32, incarnation: u64, block: Block) -> Passage {
+        let held = vec![Held { zone: 0, step: Step { number: 0, block } }];
+        Passage { robot, incarnation, held, links: Vec::new() }
+    }
+
+    /// The same passage as an earlier one.
+    pub(crate) fn with(robot: u32, incarnation: u64, held: Vec<Held>, links: Vec<Link>) -> Passage {
+        Passage { robot, incarnation, held, links }
+    }
+
+    pub(crate) fn robot(&self) -> u32 {
+        self.robot
+    }
+
+    pub(crate) fn incarnation(&self) -> u64 {
+        self.incarnation
+    }
+
+    pub(crate) fn held(&self) -> &[Held] {
+        &self.held
+    }
+
+    pub(crate) fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// The block after the one where the robot is, if it may enter it.
+    pub(crate) fn next(&self) -> Option<Block> {
+        self.held.get(1).map(|held| held.step.block)
+    }
+
+    /// The last block that the robot holds.
+    pub(crate) fn end(&self) -> Block {
+        self.held.last().map_or(Block::default(), |held| held.step.block)
+    }
+
+    /// Takes in the territory of a zone.
+    pub(crate) fn hear_territory(&mut self, territory: &Territory) {
+        match self.links.iter_mut().find(|link| link.territory.zone == territory.zone) {
+            Some(link) if territory.term < link.territory.term => return,
+            Some(link) if territory.term == link.territory.term => link.territory.clone_from(territory),
+            // The zone lost its record: what it granted before and did not arrive yet counts no more.
+            Some(link) => {
+                link.territory.clone_from(territory);
+                link.heard = 0;
+            }
+            None => {
+                let territory = territory.clone();
+                self.links.push(Link { territory, received: 0, said: GrantRequest::default(), heard: 0 });
+            }
+        }
+        for held in self.held.iter_mut().filter(|held| held.zone == 0 && territory.contains(held.step.block)) {
+            held.zone = territory.zone;
+        }
+    }
+
+    /// Takes in a grant. Steps that do not continue the passage are released at once.
+    pub(crate) fn hear(&mut self, grant: &Grant) {
+        let end = self.end();
+        let Some(link) = self.links.iter_mut().find(|link| link.territory.zone == grant.zone) else { return };
+        if grant.robot != self.robot || grant.incarnation != self.incarnation || grant.term != link.territory.term {
+            return;
+        }
+        link.heard = link.heard.max(grant.heard);
+        let mut end = end;
+        for step in &grant.steps {
+            if step.number > link.received {
+                link.received = step.number;
+                if step.block.distance(end) == 1 {
+                    self.held.push(Held { zone: grant.zone, step: *step });
+                    end = step.block;
+                }
+            }
+        }
+    }
+
+    /// The robot has arrived at a block of its passage: it releases those before.
+    pub(crate) fn arrive(&mut self, block: Block) {
+        if let Some(place) = self.held.iter().position(|held| held.step.block == block) {
+            self.held.drain(..place);
+        }
+    }
+
+    /// Releases the blocks after the first ones, which the robot has not begun to enter.
+    pub(crate) fn give_back(&mut self, first: usize) {
+        self.held.truncate(first.max(1));
+    }
+
+    /// The requests that have to be sent now: new ones, and with `again` also those that were not taken in.
+    pub(crate) fn requests(&mut self, wish: Wish, again: bool) -> Vec<GrantRequest> {
+        let Passage { robot, incarnation, ref held, ref mut links } = *self;
+        let (Some(first), Some(last)) = (held.first(), held.last()) else { return Vec::new() };
+        let (block, end) = (first.step.block, last.step.block);
+        let goal = wish.goal.unwrap_or(end);
+        let mut requests = Vec::new();
+        for one in links {
+            let zone = one.territory.zone;
+            let of_zone: Vec<Step> = held.iter().filter(|held| held.zone == zone).map(|held| held.step).collect();
+            let is_near = one.territory.contains(end)
+                || goal != end && end.neighbours().into_iter().any(|block| one.territory.contains(block));
+            let is_concerned = is_near || !of_zone.is_empty();
+            // Each zone has to hear once in its term what each robot holds.
+            let is_new = one.said.term != one.territory.term;
+            let request = GrantRequest {
+                link: link(zone, robot),
+                zone,
+                term: one.territory.term,
+                robot,
+                incarnation,
+                number: one.said.number,
+                block,
+                end,
+                received: one.received,
+                held: of_zone,
+                goal: if is_concerned { goal } else { end },
+                charger: wish.charger,
+                rank: if is_concerned { wish.rank } else { 0 },
+                standing: wish.standing,
+            };
+            // A zone that the robot has left need not know where it is now.
+            let is_news = if is_concerned || is_new {
+                request != one.said
+            } else {
+                (request.goal != request.end) != (one.said.goal != one.said.end)
+                    || (&request.held, request.received) != (&one.said.held, one.said.received)
+            };
+            if is_news {
+                one.said = GrantRequest { number: one.said.number + 1, ..request };
+            }
+            if is_news || again && one.heard < one.said.number {
+                requests.push(one.said.clone());
+            }
+        }
+        requests
+    }
+}
