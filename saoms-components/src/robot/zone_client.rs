@@ -8,7 +8,7 @@ use crate::validation::MessageValidator;
 use crate::zone::{Held, Link, Passage, Wish};
 
 /// Number of executions after which the robot repeats a request that its zone did not confirm.
-const REPEAT: u32 = 8;
+const REPEAT: u32 = 4;
 
 /// Distance within which the robot hears grants, in blocks: they are sent to where the zone knows that it is.
 const HEARING: u32 = 12;

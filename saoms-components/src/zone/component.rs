@@ -16,10 +16,10 @@ use crate::messages::{FAULT, Fault, FaultKind, GRANT, GRANT_REQUEST, Grant, Gran
 use crate::validation::MessageValidator;
 
 /// Number of executions after which the zone repeats what was not confirmed.
-const REPEAT: u64 = 8;
+const REPEAT: u64 = 4;
 
 /// Number of executions after which it confirms what it need not answer otherwise.
-const CONFIRM: u64 = 4;
+const CONFIRM: u64 = 1;
 
 /// Number of executions without grants after which the zone says for whom it waits.
 const CLOSED: u64 = 20;

@@ -37,16 +37,27 @@ pub struct TrafficTopic {
     pub readers: Vec<TopicEnd>,
 }
 
-/// A component that uses a topic.
+/// A component that uses a topic. It is small, as a fleet has one for each component and topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TopicEnd {
-    /// Its index in the assembly.
-    pub component: usize,
+    component: u32,
     /// The number of its parts that declare the topic: itself and its loops, each of which can send one message in an
     /// execution, or more.
     pub parts: u32,
+    /// From one execution to the next, in nanoseconds; 0 for a passive component.
+    period: u64,
+}
+
+impl TopicEnd {
+    /// Its index in the assembly.
+    pub fn component(&self) -> usize {
+        self.component as usize
+    }
+
     /// From one execution to the next; `None` for a passive component.
-    pub period: Option<Duration>,
+    pub fn period(&self) -> Option<Duration> {
+        (self.period > 0).then(|| Duration::from_nanos(self.period))
+    }
 }
 
 impl Traffic {
@@ -102,14 +113,17 @@ impl<'a> Known<'a> {
 
 /// Adds a component to the ends of a topic.
 fn add(ends: &mut Vec<TopicEnd>, component: usize, spec: &ComponentSpec) {
-    match ends.last_mut().filter(|last| last.component == component) {
+    match ends.last_mut().filter(|last| last.component() == component) {
         Some(last) => last.parts += 1,
         None => {
             // Where each component has topics of its own, there is one end to each.
             if ends.is_empty() {
                 ends.reserve_exact(1);
             }
-            ends.push(TopicEnd { component, parts: 1, period: spec.task.as_ref().map(|task| task.period) });
+            // The limits of composites keep numbers of components far below, and a period is at most a day.
+            let component = u32::try_from(component).unwrap_or(u32::MAX);
+            let period = spec.task.as_ref().map_or(0, |task| u64::try_from(task.period.as_nanos()).unwrap_or(u64::MAX));
+            ends.push(TopicEnd { component, parts: 1, period });
         }
     }
 }
@@ -124,7 +138,7 @@ impl TrafficTopic {
     pub fn pace(&self) -> Pace {
         let mut parts: BTreeMap<u128, u64> = BTreeMap::new();
         for writer in &self.writers {
-            if let Some(period) = writer.period {
+            if let Some(period) = writer.period() {
                 *parts.entry(period.as_nanos().max(1)).or_default() += u64::from(writer.parts);
             }
         }
@@ -133,7 +147,7 @@ impl TrafficTopic {
 
     /// The number of messages a second if each part of each writer sends one in each execution.
     pub fn rate(&self) -> f64 {
-        let rates = self.writers.iter().filter_map(|writer| Some((writer.parts, writer.period?)));
+        let rates = self.writers.iter().filter_map(|writer| Some((writer.parts, writer.period()?)));
         // The sum of none is `-0.0`.
         rates.map(|(parts, period)| f64::from(parts) / period.as_secs_f64()).sum::<f64>() + 0.0
     }

@@ -23,11 +23,11 @@ fn groups<'a>(ends: &[TopicEnd], assembly: &'a Assembly) -> Vec<Group<'a>> {
     let mut all: Vec<Group<'a>> = Vec::new();
     let mut places: HashMap<(&str, Option<Duration>, u32), usize> = HashMap::new();
     for end in ends {
-        let component = &assembly.components[end.component];
+        let component = &assembly.components[end.component()];
         let class = component.class.name();
-        let place = *places.entry((class, end.period, end.parts)).or_insert(all.len());
+        let place = *places.entry((class, end.period(), end.parts)).or_insert(all.len());
         if place == all.len() {
-            all.push(Group { class, period: end.period, parts: end.parts, paths: Vec::new() });
+            all.push(Group { class, period: end.period(), parts: end.parts, paths: Vec::new() });
         }
         all[place].paths.push(&component.path);
     }

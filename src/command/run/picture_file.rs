@@ -33,7 +33,7 @@ impl PictureFile {
         }
         for topic in &Traffic::of(assembly).topics {
             for reader in &topic.readers {
-                picture.reader(&topic.name, &assembly.components[reader.component].path);
+                picture.reader(&topic.name, &assembly.components[reader.component()].path);
             }
         }
         PictureFile { output, title, picture: Mutex::new(picture) }

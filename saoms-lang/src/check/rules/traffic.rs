@@ -93,7 +93,7 @@ impl All<'_> {
     /// True if a reader takes an event by the topic: scenarios and people bring its messages.
     fn comes_from_outside(&self, topic: &TrafficTopic) -> bool {
         topic.readers.iter().any(|end| {
-            let spec = &self.assembly.components[end.component];
+            let spec = &self.assembly.components[end.component()];
             spec.class.declaration().takes.iter().any(|taken| spec.topic(&taken.topic) == topic.name)
         })
     }
@@ -109,7 +109,7 @@ impl All<'_> {
         let bases = |topic: &'t TrafficTopic| {
             topic.ends().find_map(|end| {
                 let renamed = self.renamed(end, topic);
-                let mut at = renamed.map(|one| one.new.location).into_iter().chain(self.places[end.component].site);
+                let mut at = renamed.map(|one| one.new.location).into_iter().chain(self.places[end.component()].site);
                 at.any(|at| told.contains(&at)).then(|| [base(topic), renamed.map(|one| one.old.as_str())])
             })
         };
@@ -120,12 +120,12 @@ impl All<'_> {
 
     /// The place from which a component has the name of a topic.
     fn at(&self, end: &TopicEnd, topic: &TrafficTopic) -> Location {
-        self.renamed(end, topic).map_or(self.places[end.component].name, |one| one.new.location)
+        self.renamed(end, topic).map_or(self.places[end.component()].name, |one| one.new.location)
     }
 
     /// `component X`, or `component X and 3 others`.
     fn who(&self, ends: &[TopicEnd]) -> String {
-        let first = ends.first().map_or("", |end| self.assembly.components[end.component].path.as_str());
+        let first = ends.first().map_or("", |end| self.assembly.components[end.component()].path.as_str());
         match ends.len() {
             0 | 1 => format!("component {}", quoted(first)),
             2 => format!("component {} and another one", quoted(first)),
@@ -161,13 +161,13 @@ impl All<'_> {
 
     /// The pair of `topicRename` from which a component has the name of a topic.
     fn renamed(&self, end: &TopicEnd, topic: &TrafficTopic) -> Option<&Renamed> {
-        let site = &self.assembly.components[end.component].site;
-        self.places[end.component].renamed.iter().find(|one| on_bus(site, &one.new) == topic.name)
+        let site = &self.assembly.components[end.component()].site;
+        self.places[end.component()].renamed.iter().find(|one| on_bus(site, &one.new) == topic.name)
     }
 
     /// The name of a topic as the `topicRename` of a component has it.
     fn local<'t>(&self, end: &TopicEnd, topic: &'t TrafficTopic) -> Cow<'t, str> {
-        let site = &self.assembly.components[end.component].site;
+        let site = &self.assembly.components[end.component()].site;
         match topic.name.strip_prefix(site.as_str()).and_then(|rest| rest.strip_prefix('/')) {
             _ if site.is_empty() => topic.name.as_str().into(),
             Some(inside) => inside.into(),
@@ -178,8 +178,8 @@ impl All<'_> {
     fn alone(&self, topic: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {
         let (Some(end), Some(other)) = (topic.writers.first(), meant.ends().next()) else { return };
         let mut users: Vec<TopicEnd> = topic.ends().copied().collect();
-        users.sort_by_key(|end| end.component);
-        users.dedup_by_key(|end| end.component);
+        users.sort_by_key(|end| end.component());
+        users.dedup_by_key(|end| end.component());
         let hear = match users.len() {
             1 => "receives only its own messages",
             _ => "receive only their own messages",
@@ -227,7 +227,7 @@ impl All<'_> {
 
     /// Compares how often a topic is written and read.
     fn rates(&self, topic: &TrafficTopic, report: &mut Report<'_>) {
-        let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
+        let fastest = topic.writers.iter().filter_map(|writer| writer.period()).min();
         let pace = topic.pace();
         let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
         // Those of one period, and of these those that lose messages with one queue: each is reported once, since a
@@ -236,20 +236,20 @@ impl All<'_> {
         let mut queues: HashMap<(Duration, usize), Vec<TopicEnd>> = HashMap::new();
         let default = TaskProperties::default_queue(topic.writers.len() + topic.readers.len());
         let losing = |reader: &TopicEnd| {
-            let task = self.assembly.components[reader.component].task.as_ref()?;
+            let task = self.assembly.components[reader.component()].task.as_ref()?;
             (topic.kind == TopicKind::Event && task.loss == Loss::Fail).then(|| task.queue.unwrap_or(default))
         };
         for reader in &topic.readers {
-            let Some(period) = reader.period else { continue };
+            let Some(period) = reader.period() else { continue };
             alike.entry(period).or_default().push(*reader);
             if let Some(queue) = losing(reader) {
                 queues.entry((period, queue)).or_default().push(*reader);
             }
         }
         for reader in &topic.readers {
-            let Some(period) = reader.period else { continue };
+            let Some(period) = reader.period() else { continue };
             let queue = losing(reader);
-            let at = self.places[reader.component].queue.unwrap_or(self.at(reader, topic));
+            let at = self.places[reader.component()].queue.unwrap_or(self.at(reader, topic));
             if let Some(queue) = queue.filter(|queue| pace.exceeds(period, *queue as u64))
                 && let Some(readers) = queues.remove(&(period, queue))
                 && !report.diagnostics().skip(&codes::QUEUE, codes::QUEUE.severity, at)
@@ -303,8 +303,8 @@ fn meant<'t>(lone: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t Traff
 /// The topic that a component has left that uses this one alone and hears only itself: of the same messages, with
 /// nearly its name, and used by several others.
 fn left<'t>(topic: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t TrafficTopic> {
-    let only = topic.writers.first()?.component;
-    if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {
+    let only = topic.writers.first()?.component();
+    if topic.readers.is_empty() || topic.ends().any(|end| end.component() != only) {
         return None;
     }
     let name = Name::of(&topic.name);
@@ -312,7 +312,7 @@ fn left<'t>(topic: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t Traff
         if other.has_other_numbers(&name) {
             return false;
         }
-        let mut others = other.topic.ends().map(|end| end.component).filter(|other| *other != only);
+        let mut others = other.topic.ends().map(|end| end.component()).filter(|other| *other != only);
         let first = others.next();
         others.any(|other| Some(other) != first)
     })

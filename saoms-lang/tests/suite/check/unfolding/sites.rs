@@ -37,7 +37,7 @@ fn topics(texts: &[&str]) -> String {
     let mut out = told(&diagnostics, &sources);
     let Some(assembly) = assembly else { return out };
     for topic in Traffic::of(&assembly).topics {
-        let path = |end: &saoms_lang::assembly::TopicEnd| assembly.components[end.component].path.as_str();
+        let path = |end: &saoms_lang::assembly::TopicEnd| assembly.components[end.component()].path.as_str();
         let readers: Vec<&str> = topic.readers.iter().map(path).collect();
         out.push_str(&format!("{} [{}]: {}\n", topic.name, topic.site, readers.join(" ")));
     }
