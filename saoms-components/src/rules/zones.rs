@@ -14,14 +14,13 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5023",
         name: "zones",
-        meaning: "Zones overlap, leave free blocks of the map out, have blocks outside the map, or have no map. Or a \
+        meaning: "Zones overlap, leave free blocks of the map out, or have blocks outside the map. Or a \
             component of their site drives without their grants: a robot of the policy `classic`, or one of a class \
             that does not ask for grants.",
         severity: Severity::Error,
         rule: None,
     },
-    // A zone without a map may have a reference that leads nowhere, which is told where it stands.
-    judges_parts: false,
+    judges_parts: true,
     prevents_start: true,
     check,
 };
@@ -75,17 +74,8 @@ impl<'f> ZoneOfSite<'f> {
                 // Hardware of another class has a map of its own.
                 None => return Ok(None),
             },
-            None => match properties.map() {
-                Ok(None) => {
-                    let message = "the zone has no map";
-                    return Err(Box::new(Finding::new(Place::component(index), message).help(
-                        "wire its reference `world` to the world of its robots: `<reference name=\"world\" \
-                         target=\"World\"/>`; without a world, give it the property `map`",
-                    )));
-                }
-                Ok(map) => map,
-                Err(_) => None,
-            },
+            // A zone without a map does not start. Its reference may lead nowhere, which is told where it stands.
+            None => properties.map().ok().flatten(),
         };
         let Some(map) = map else { return Ok(None) };
         let territory = properties.territory(1, &map).map_err(|finding| Box::new(finding.in_component(index)))?;

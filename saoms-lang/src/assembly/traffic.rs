@@ -29,7 +29,7 @@ pub struct TrafficTopic {
     pub kind: TopicKind,
     /// The name of the type of its messages.
     pub message: String,
-    /// True if it needs no reader: all that publish it say so, and it has the name that they give it.
+    /// True if it needs no reader, or no publisher: all that use it say so, and it has the name that they give it.
     pub is_optional: bool,
     /// Its publishers, in the order of the assembly.
     pub writers: Vec<TopicEnd>,
@@ -71,11 +71,14 @@ impl Traffic {
             let read = own.subscribes.iter().chain(loops().flat_map(|one| &one.subscribes));
             for declared in written {
                 let topic = all.topic(declared, spec);
-                // Who gives it another name means a reader.
-                topic.is_optional &= declared.optional && topic.name == on_bus(&spec.site, &declared.name);
+                topic.note_whether_optional(declared, spec);
                 add(&mut topic.writers, component, spec);
             }
-            read.for_each(|declared| add(&mut all.topic(declared, spec).readers, component, spec));
+            for declared in read {
+                let topic = all.topic(declared, spec);
+                topic.note_whether_optional(declared, spec);
+                add(&mut topic.readers, component, spec);
+            }
         }
         let mut topics = all.topics;
         topics.sort_unstable_by(|one, other| one.name.cmp(&other.name));
@@ -129,6 +132,11 @@ fn add(ends: &mut Vec<TopicEnd>, component: usize, spec: &ComponentSpec) {
 }
 
 impl TrafficTopic {
+    /// Who gives it another name means somebody at its other end.
+    fn note_whether_optional(&mut self, declared: &ClassTopic, spec: &ComponentSpec) {
+        self.is_optional &= declared.optional && self.name == on_bus(&spec.site, &declared.name);
+    }
+
     /// Its users: writers, then readers.
     pub fn ends(&self) -> impl Iterator<Item = &TopicEnd> {
         self.writers.iter().chain(&self.readers)

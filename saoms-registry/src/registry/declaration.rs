@@ -1,6 +1,6 @@
 //! Declarations of classes, read from text (see [`saoms_api::host::declaration`]).
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use saoms_api::TaskInterface;
 use saoms_api::host::declaration::{Bound, PropertyKind, Rule, Scalar};
@@ -221,7 +221,8 @@ pub struct ClassTopic {
     /// The name of the message type.
     pub message: String,
     /// The schema of the message type: two ends agree when these are equal.
-    pub schema: Value,
+    #[serde(deserialize_with = "schema")]
+    pub schema: Arc<Value>,
     /// True if its publishers need no reader.
     #[serde(default)]
     pub optional: bool,
@@ -434,6 +435,10 @@ fn topic_kind<'de, D: Deserializer<'de>>(from: D) -> Result<TopicKind, D::Error>
     let kinds = [TopicKind::State, TopicKind::Event];
     let found = kinds.into_iter().find(|kind| kind.name() == name);
     found.ok_or_else(|| D::Error::custom(format!("`{name}` is neither `state` nor `event`")))
+}
+
+fn schema<'de, D: Deserializer<'de>>(from: D) -> Result<Arc<Value>, D::Error> {
+    Value::deserialize(from).map(Arc::new)
 }
 
 /// A bound as text: numbers are written as numbers, durations as text.

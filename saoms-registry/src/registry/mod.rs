@@ -11,6 +11,7 @@ mod looping;
 mod near;
 mod read;
 mod rule;
+mod schemas;
 mod speaker;
 mod team;
 #[cfg(test)]
@@ -39,6 +40,7 @@ pub use team::{Team, TeamFault};
 
 use crate::ReservedCodes;
 use near::{near, simple};
+use schemas::Schemas;
 
 /// Classes and loops by name.
 ///
@@ -72,6 +74,7 @@ pub struct Registry {
     classes: BTreeMap<String, Arc<RegisteredClass>>,
     loops: BTreeMap<String, Arc<RegisteredLoop>>,
     rules: Vec<RegisteredRule>,
+    schemas: Schemas,
 }
 
 impl Registry {
@@ -177,7 +180,7 @@ impl Registry {
         if self.loops.values().find(same).is_some_and(|same| same.origin() == provider.origin()) {
             return Ok(());
         }
-        let added = read::looping(declaration, provider)?;
+        let added = read::looping(declaration, provider, &mut self.schemas)?;
         let name = added.name();
         if let Some(first) = self.holder(name) {
             let second = Holder::new("loop", name, added.origin());
@@ -193,7 +196,7 @@ impl Registry {
     /// # Errors
     /// As [`Registry::add`].
     pub fn add_provided(&mut self, declaration: &str, provider: Arc<dyn Provider>) -> Result<(), RegistryError> {
-        let classes = read::class(declaration, &provider)?;
+        let classes = read::class(declaration, &provider, &mut self.schemas)?;
         for (place, class) in classes.iter().enumerate() {
             let holder = |class: &RegisteredClass| Holder::new("class", &class.declaration.name, class.origin());
             let again = classes[..place].iter().find(|other| other.name == class.name);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 
+use super::schemas::Schemas;
 use super::{
     ClassDeclaration, LoopDeclaration, LoopProvider, Provider, RegisteredClass, RegisteredLoop, RegistryError, error,
     extend, validate,
@@ -18,7 +19,11 @@ struct Head {
 }
 
 /// A class under each of its names, the declared one first.
-pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<RegisteredClass>, RegistryError> {
+pub(super) fn class(
+    text: &str,
+    provider: &Arc<dyn Provider>,
+    schemas: &mut Schemas,
+) -> Result<Vec<RegisteredClass>, RegistryError> {
     let malformed = |class: String, message| RegistryError::Malformed { class, message };
     let mut own: ClassDeclaration = declaration(text, malformed)?;
     let extended = extend::lineage(text).map_err(|message| malformed(own.name.clone(), message))?;
@@ -31,6 +36,7 @@ pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Regi
     }
     inherit(&mut own, base)?;
     validate::class(&own).map_err(|message| malformed(own.name.clone(), message))?;
+    schemas.share(own.publishes.iter_mut().chain(&mut own.subscribes));
     let extended: Arc<[Arc<str>]> = extended.into_iter().map(Arc::from).collect();
     let declaration = Arc::new(own);
     let text: Arc<str> = text.into();
@@ -59,10 +65,15 @@ fn inherit(class: &mut ClassDeclaration, base: Option<ClassDeclaration>) -> Resu
     inherited.map_err(|message| RegistryError::Malformed { class: class.name.clone(), message })
 }
 
-pub(super) fn looping(text: &str, provider: Arc<dyn LoopProvider>) -> Result<RegisteredLoop, RegistryError> {
+pub(super) fn looping(
+    text: &str,
+    provider: Arc<dyn LoopProvider>,
+    schemas: &mut Schemas,
+) -> Result<RegisteredLoop, RegistryError> {
     let malformed = |name: String, message| RegistryError::MalformedLoop { name, message };
-    let declaration: LoopDeclaration = declaration(text, malformed)?;
+    let mut declaration: LoopDeclaration = declaration(text, malformed)?;
     validate::looping(&declaration).map_err(|message| malformed(declaration.name.clone(), message))?;
+    schemas.share(declaration.publishes.iter_mut().chain(&mut declaration.subscribes));
     Ok(RegisteredLoop { declaration, text: text.into(), provider })
 }
 

@@ -31,7 +31,8 @@ fn the_command_line_counts_before_the_environment_and_that_before_the_file() {
 fn the_wiring_report_says_who_talks_to_whom() {
     let shown = stdout(&saoms(&["check", "--wiring", HANGAR]));
     let robots = "40 of saoms.Robot every 500ms: Robot01 to Robot40";
-    assert!(shown.contains(&format!("POSTOPIC  state topic of Position, 80 messages/s if each execution sends one\n  published by {robots}\n  read by {robots}\n")), "{shown}");
+    let master = "MasterEnvironment (saoms.MasterEnvironment every 500ms)";
+    assert!(shown.contains(&format!("POSTOPIC  state topic of Position, 80 messages/s if each execution sends one\n  published by {robots}\n  read by {master}\n  read by {robots}\n")), "{shown}");
     assert!(shown.ends_with("44 components: 0 errors, 0 warnings\n"), "{shown}");
     let shown = stdout(&saoms(&["check", "--wiring", "--format", "json", HANGAR]));
     let value: Value = serde_json::from_str(&shown).unwrap();
@@ -45,12 +46,12 @@ fn the_wiring_report_says_who_talks_to_whom() {
     assert!(stderr(&saoms(&["check", HANGAR])).is_empty(), "notes come with the report alone");
 }
 
-/// As many robots as are asked for, on a charger each.
+/// As many robots as are asked for, on a charger each, and a master with a queue of its own length.
 fn robots(folder: &std::path::Path) -> String {
     let path = folder.join("many.composite");
     let text = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:saoms="urn:saoms:1" targetNamespace="urn:m" name="many">
 <property name="robots">1000</property>
-<component name="Master"><implementation.rust class="saoms.MasterEnvironment"/><property name="ID">Master</property><property name="period">500</property></component>
+<component name="Master"><implementation.rust class="saoms.MasterEnvironment"/><property name="ID">Master</property><property name="period">500</property><property name="queue">1024</property></component>
 <component name="Robot${index}" saoms:count="robots"><implementation.rust class="saoms.Robot"/><property name="ID">Robot${index}</property>
 <property name="period">1000</property><property name="chargeY">${index}</property></component>
 </composite>"#;
@@ -59,7 +60,7 @@ fn robots(folder: &std::path::Path) -> String {
 }
 
 #[test]
-fn a_thousand_robots_are_too_many_for_the_queues_that_forty_fit_into() {
+fn a_thousand_robots_are_too_many_for_a_queue_that_forty_fit_into() {
     let folder = tempfile::tempdir().unwrap();
     let path = robots(folder.path());
     let output = saoms(&["check", "--wiring", &path]);

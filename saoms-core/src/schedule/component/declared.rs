@@ -67,7 +67,7 @@ impl ComponentHost<'_> {
             declared.name == topic.name
                 && declared.kind == topic.kind
                 && declared.message == topic.message
-                && schema.as_ref() == Some(&declared.schema)
+                && schema.as_ref() == Some(&*declared.schema)
         };
         !self.declared(use_as).any(is_it)
     }

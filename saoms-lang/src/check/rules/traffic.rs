@@ -75,7 +75,7 @@ pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mu
             all.alone(topic, meant, report);
         }
         if lone.contains_key(topic.name.as_str()) {
-            if topic.writers.is_empty() || !topic.is_optional {
+            if !topic.is_optional {
                 all.lone(topic, report);
             }
         } else {
