@@ -388,6 +388,12 @@ proptest! {
             line.push_str(value);
             line.push(' ');
         }
+        // A visit has as many blocks as one likes.
+        line.push_str(match continuations(&line).first() {
+            Some(Continuation::Place) => "(3, 1)",
+            Some(Continuation::Robot) => "Robot002",
+            _ => "",
+        });
         // `then` needs a line before it.
         let read = Scenario::read(&["at 0 end", &line]).map(|scenario| scenario.lines().len());
         prop_assert_eq!(read.map_err(|findings| format!("{line}: {findings:?}")), Ok(2));
