@@ -59,6 +59,8 @@ mod loop_bench;
 #[cfg(feature = "fleets")]
 mod moment;
 #[cfg(feature = "fleets")]
+mod problem;
+#[cfg(feature = "fleets")]
 mod run;
 mod stage;
 #[cfg(feature = "fleets")]
@@ -74,6 +76,8 @@ pub use installed::{Installed, InstalledRun};
 pub use loop_bench::LoopBench;
 #[cfg(feature = "fleets")]
 pub use moment::{Expect, Moment, PointInTime};
+#[cfg(feature = "fleets")]
+pub use problem::{Pace, Problem, ProblemFault, Task};
 #[cfg(feature = "fleets")]
 pub use run::Run;
 #[cfg(feature = "fleets")]

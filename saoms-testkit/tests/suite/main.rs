@@ -8,6 +8,7 @@ mod events;
 mod faults;
 mod loops;
 mod planted;
+mod problem;
 mod records;
 mod run;
 mod start;
