@@ -256,7 +256,9 @@ mod tests {
     fn a_composite_states_what_is_required_and_what_is_not_the_default() {
         let task = |more: &[(&str, &str)]| shown(&[&[("ID", "a"), ("period", "1000")], more].concat());
         assert_eq!(task(&[]), "ID=a period=1s");
-        assert_eq!(task(&[("delay", "0"), ("useJMS", "true"), ("queue", "01024")]), "ID=a period=1s");
+        assert_eq!(task(&[("delay", "0"), ("useJMS", "true")]), "ID=a period=1s");
+        // Without it, a queue is as large as its topic needs.
+        assert_eq!(task(&[("queue", "01024")]), "ID=a period=1s queue=1024");
         let given = [("loss", "accept"), ("topicRename", " A , b ::C,d"), ("overrun", "catchUp"), ("deadline", "0.5s")];
         assert_eq!(task(&given), "ID=a period=1s topicRename=A,b::C,d overrun=catchUp deadline=500ms loss=accept");
         let restart = task(&[("restartLimit", "7"), ("restart", "onFailure")]);
