@@ -102,6 +102,9 @@ pub struct GrantRequest {
     pub rank: u64,
     /// What it does when another robot wants its block.
     pub standing: Standing,
+    /// Number of blocks that have to be granted ahead, so that the robot does not stop to wait for grants. The zone may
+    /// grant fewer.
+    pub ahead: u32,
 }
 
 /// What a robot does when another one wants its block.
@@ -136,6 +139,10 @@ pub struct Grant {
     pub block: Block,
     /// The steps, in their order.
     pub steps: Vec<Step>,
+    /// Robot that holds the block where this one waits to go; 0 if it does not wait for a robot.
+    pub waits_for: u32,
+    /// The block for which it waits.
+    pub wanted: Block,
 }
 
 /// Number of a robot and a zone in one number, the key of their messages.

@@ -15,6 +15,7 @@ mod hardware_client;
 mod job;
 mod knowledge;
 mod lasting;
+mod latency;
 mod lists;
 mod memory;
 mod orders;

@@ -2,13 +2,17 @@
 
 use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
+use super::latency::Latency;
 use crate::grid::{Block, Map};
 use crate::messages::{GRANT, GRANT_REQUEST, Grant, GrantRequest, Step, TERRITORY, Territory};
 use crate::validation::MessageValidator;
 use crate::zone::{Held, Link, Passage, Wish};
 
-/// Number of executions after which the robot repeats a request that its zone did not confirm.
+/// Number of executions after which a robot repeats a request that its zone did not confirm.
 const REPEAT: u32 = 4;
+
+/// The same for a robot that waits for a grant.
+const REPEAT_WAITING: u32 = 2;
 
 /// Distance within which the robot hears grants, in blocks: they are sent to where the zone knows that it is.
 const HEARING: u32 = 12;
@@ -31,6 +35,9 @@ pub(crate) struct ZoneClient {
     goal: Option<Block>,
     /// Block to which a loop ordered the robot, and that is not granted yet.
     pub(super) asked: Option<Block>,
+    /// The block that another robot has to leave first, and that robot.
+    in_the_way: Option<InTheWay>,
+    latency: Latency,
     hears_around: Option<Block>,
 }
 
@@ -41,6 +48,15 @@ pub(crate) struct ZoneMemory {
     held: Vec<HeldMemory>,
     links: Vec<LinkMemory>,
     goal: Option<Block>,
+    in_the_way: Option<InTheWay>,
+    latency: Latency,
+}
+
+/// A block, and the robot that has to leave it first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
+pub(crate) struct InTheWay {
+    pub(super) block: Block,
+    pub(super) robot: u32,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -75,6 +91,8 @@ impl ZoneClient {
             silent: 0,
             goal: None,
             asked: None,
+            in_the_way: None,
+            latency: Latency::default(),
             hears_around: None,
         }))
     }
@@ -87,7 +105,14 @@ impl ZoneClient {
             said: link.said.clone(),
             heard: link.heard,
         });
-        ZoneMemory { incarnation: passage.incarnation(), held: held.collect(), links: links.collect(), goal: self.goal }
+        ZoneMemory {
+            incarnation: passage.incarnation(),
+            held: held.collect(),
+            links: links.collect(),
+            goal: self.goal,
+            in_the_way: self.in_the_way,
+            latency: self.latency.clone(),
+        }
     }
 
     /// The same while the robot is on the floor.
@@ -105,6 +130,7 @@ impl ZoneClient {
         });
         self.passage = Some(Passage::with(robot, memory.incarnation, held.collect(), links.collect()));
         self.goal = memory.goal;
+        (self.in_the_way, self.latency) = (memory.in_the_way, memory.latency);
     }
 
     /// The robot enters the floor at a block, without memory of grants to an earlier incarnation of it.
@@ -118,7 +144,11 @@ impl ZoneClient {
 
     /// Takes in what zones say.
     pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) {
-        let ZoneClient { passage: Some(passage), territories, grants, validator, .. } = self else { return };
+        let ZoneClient { passage: Some(passage), territories, grants, validator, in_the_way, latency, .. } = self
+        else {
+            return;
+        };
+        latency.begin_execution();
         for (header, territory) in context.receive(territories).with_headers() {
             if validator.accepts(territory, header, area, context) {
                 passage.hear_territory(territory);
@@ -126,8 +156,11 @@ impl ZoneClient {
             }
         }
         for (header, grant) in context.receive(grants).with_headers() {
-            if grant.robot == passage.robot() && validator.accepts(grant, header, area, context) {
-                passage.hear(grant);
+            if grant.robot == passage.robot() && validator.accepts(grant, header, area, context) && passage.hear(grant)
+            {
+                let waits = grant.waits_for != 0;
+                *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
+                latency.hears(grant.zone, grant.heard);
             }
         }
     }
@@ -149,6 +182,17 @@ impl ZoneClient {
         self.passage.as_ref()?.next()
     }
 
+    /// The robot that is in the way, if the robot can drive no further.
+    pub(crate) fn in_the_way(&self) -> Option<InTheWay> {
+        let passage = self.passage.as_ref()?;
+        self.in_the_way.filter(|wait| passage.next().is_none() && wait.block.distance(passage.end()) == 1)
+    }
+
+    /// Number of executions that zones take to answer.
+    pub(crate) fn latency(&self) -> u32 {
+        self.latency.executions()
+    }
+
     /// The robot is at a block, and leaves no other one.
     pub(crate) fn arrive(&mut self, block: Block) {
         if let Some(passage) = &mut self.passage {
@@ -157,16 +201,17 @@ impl ZoneClient {
     }
 
     /// The robot wants to go there, or nowhere. If it wanted to go elsewhere before, it releases its passage, but for
-    /// the first `begun` blocks, which it is on or has begun to enter. What was granted while it had no goal is to make
-    /// way for others.
-    pub(crate) fn aim(&mut self, goal: Option<Block>, begun: usize) {
+    /// the first `begun` blocks, which it is on or has begun to enter, and those after them that lead to the new goal:
+    /// `way` is the number of moves between two blocks. What was granted while it had no goal is to make way for others.
+    pub(crate) fn aim(&mut self, goal: Option<Block>, begun: usize, mut way: impl FnMut(Block, Block) -> u32) {
         let before = std::mem::replace(&mut self.goal, goal);
         if let Some(passage) = &mut self.passage
             && before.is_some()
-            && goal.is_some()
-            && goal != before
+            && let Some(goal) = goal.filter(|goal| Some(*goal) != before)
         {
-            passage.give_back(begun);
+            let left: Vec<u32> = passage.held().iter().map(|held| way(held.step.block, goal)).collect();
+            let ahead = left.windows(2).skip(begun.max(1) - 1).take_while(|pair| pair[1] < pair[0]).count();
+            passage.give_back(begun.max(1) + ahead);
         }
     }
 
@@ -184,12 +229,14 @@ impl ZoneClient {
     pub(crate) fn ask(&mut self, context: &mut Context<'_>, wish: Wish) -> Result<(), Failure> {
         let Some(passage) = &mut self.passage else { return Ok(()) };
         self.silent = self.silent.saturating_add(1);
-        let again = self.silent >= REPEAT;
+        let waits = passage.next().is_none() && wish.goal.is_some_and(|goal| goal != passage.end());
+        let again = self.silent >= if waits { REPEAT_WAITING } else { REPEAT };
         let requests = passage.requests(wish, again);
         if again || !requests.is_empty() {
             self.silent = 0;
         }
         for request in requests {
+            self.latency.asks(request.zone, request.number);
             context.send(&self.requests, request)?;
         }
         Ok(())

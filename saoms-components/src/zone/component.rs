@@ -8,6 +8,7 @@ use saoms_api::{
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger, Member};
 use super::maneuver::Maneuver;
+use super::plan::Planned;
 use super::properties::ZoneProperties;
 use super::{memory, plan};
 use crate::grid::{Block, Map};
@@ -161,8 +162,9 @@ impl Zone {
         if !self.is_open(state, context)? {
             return if changed { self.keep(state, context) } else { Ok(()) };
         }
-        let mut told = self.plan(state);
-        changed |= !told.is_empty();
+        let Planned { granted, waiting: mut told } = self.plan(state);
+        changed |= !granted.is_empty();
+        told.extend(granted);
         let execution = context.execution();
         self.unconfirmed.retain(|robot, due| {
             let is_due = *due <= execution;
@@ -264,14 +266,14 @@ impl Zone {
     }
 
     /// Plans a round, if a robot wants to go somewhere.
-    fn plan(&self, state: &mut State) -> BTreeSet<u32> {
+    fn plan(&self, state: &mut State) -> Planned {
         let State { ledger, maneuvers, ground } = state;
         let lost = ledger.members().values().filter(|member| member.is_obstacle());
         let obstacles: Vec<Block> = lost.flat_map(|member| member.steps.iter().map(|step| step.block)).collect();
         ground.begin_round(obstacles, ledger.members().values().map(|member| member.request.charger));
-        let granted = plan::plan(ledger, maneuvers, ground, self.properties.ahead as usize);
+        let planned = plan::plan(ledger, maneuvers, ground, self.properties.ahead as usize);
         ledger.end_round();
-        granted
+        planned
     }
 }
 

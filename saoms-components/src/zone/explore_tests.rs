@@ -207,6 +207,7 @@ impl State {
             charger: one.goal,
             rank: if goal.is_some() { 10 - rank } else { 0 },
             standing: Standing::MakesWay,
+            ahead: 0,
         };
         for request in one.passage.requests(wish, again) {
             self.send(Message::Request(request));
@@ -218,7 +219,7 @@ impl State {
         if !one.unheard.is_empty() {
             return self.announce(zone);
         }
-        let mut told = plan(&mut one.ledger, &mut one.maneuvers, ground, rules.ahead);
+        let mut told = plan(&mut one.ledger, &mut one.maneuvers, ground, rules.ahead).granted;
         let robots: Vec<u32> = one.ledger.members().keys().copied().collect();
         for robot in &robots {
             let waited = &mut one.ledger.member_mut(*robot).unwrap().waited;

@@ -31,9 +31,15 @@ pub(crate) struct Member {
     pub(crate) waited: u32,
     /// Number of rounds of planning in which it did not say anything new, although it could go on.
     pub(crate) silent: u32,
+    /// The block that it wants next, and the robot that holds it, while it waits for that.
+    pub(crate) in_the_way: Option<(Block, u32)>,
 }
 
 impl Member {
+    pub(crate) fn new(request: GrantRequest, steps: Vec<Step>, granted: u64) -> Member {
+        Member { request, steps, granted, waited: 0, silent: 0, in_the_way: None }
+    }
+
     /// End of the robot's passage: of the steps of this zone, else where the robot says that it is.
     pub(crate) fn end(&self) -> Block {
         self.steps.last().map_or(self.request.end, |step| step.block)
@@ -168,7 +174,7 @@ impl Ledger {
             self.hold(step.block, request.robot);
         }
         let granted = steps.iter().map(|step| step.number).max().unwrap_or(0).max(request.received);
-        self.members.insert(request.robot, Member { request: request.clone(), steps, granted, waited: 0, silent: 0 });
+        self.members.insert(request.robot, Member::new(request.clone(), steps, granted));
         conflict.unwrap_or(Heard::News)
     }
 
@@ -200,7 +206,7 @@ impl Ledger {
 
     /// The message that tells a robot what is granted to it.
     pub(crate) fn message(&self, robot: u32) -> Option<Grant> {
-        let Member { request, steps, .. } = self.members.get(&robot)?;
+        let Member { request, steps, in_the_way, .. } = self.members.get(&robot)?;
         let Territory { zone, term, .. } = self.territory;
         Some(Grant {
             link: link(zone, robot),
@@ -211,6 +217,8 @@ impl Ledger {
             heard: request.number,
             block: request.block,
             steps: steps.clone(),
+            waits_for: in_the_way.map_or(0, |(_, other)| other),
+            wanted: in_the_way.map_or(request.end, |(block, _)| block),
         })
     }
 }

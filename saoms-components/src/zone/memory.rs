@@ -38,8 +38,8 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Result<Option<(Ledger, bool)>, Failure
     let Some(LedgerMemory { territory, members, open }) = Saved::from_bytes(bytes.to_vec()).read()? else {
         return Ok(None);
     };
-    let members = members.into_iter().map(|MemberMemory { request, steps, granted }| {
-        (request.robot, Member { request, steps, granted, waited: 0, silent: 0 })
-    });
+    let members = members
+        .into_iter()
+        .map(|MemberMemory { request, steps, granted }| (request.robot, Member::new(request, steps, granted)));
     Ok(Some((Ledger::with(territory, members.collect()), open)))
 }

@@ -19,3 +19,4 @@ pub use component::Zone;
 pub use properties::ZoneProperties;
 
 pub(crate) use passage::{Held, Link, Passage, Wish};
+pub(crate) use plan::MOST_AHEAD;

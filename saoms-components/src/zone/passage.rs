@@ -44,6 +44,8 @@ pub(crate) struct Wish {
     pub(crate) rank: u64,
     /// What it does when another robot wants its block.
     pub(crate) standing: Standing,
+    /// Number of blocks that it needs granted ahead, so that it does not wait for grants.
+    pub(crate) ahead: u32,
 }
 
 impl Passage {
@@ -104,12 +106,13 @@ impl Passage {
         }
     }
 
-    /// Takes in a grant. Steps that do not continue the passage are released at once.
-    pub(crate) fn hear(&mut self, grant: &Grant) {
+    /// Takes in a grant. Steps that do not continue the passage are released at once. False if the grant is for an
+    /// earlier incarnation, or of an earlier term.
+    pub(crate) fn hear(&mut self, grant: &Grant) -> bool {
         let end = self.end();
-        let Some(link) = self.links.iter_mut().find(|link| link.territory.zone == grant.zone) else { return };
+        let Some(link) = self.links.iter_mut().find(|link| link.territory.zone == grant.zone) else { return false };
         if grant.robot != self.robot || grant.incarnation != self.incarnation || grant.term != link.territory.term {
-            return;
+            return false;
         }
         link.heard = link.heard.max(grant.heard);
         let mut end = end;
@@ -122,6 +125,7 @@ impl Passage {
                 }
             }
         }
+        true
     }
 
     /// The robot has arrived at a block of its passage: it releases those before.
@@ -166,10 +170,12 @@ impl Passage {
                 charger: wish.charger,
                 rank: if is_concerned { wish.rank } else { 0 },
                 standing: wish.standing,
+                ahead: if is_concerned { wish.ahead } else { 0 },
             };
             // A zone that the robot has left need not know where it is now.
             let is_news = if is_concerned || is_new {
-                request != one.said
+                // The zone need not hear of another latency by itself.
+                GrantRequest { ahead: one.said.ahead, ..request.clone() } != one.said
             } else {
                 (request.goal != request.end) != (one.said.goal != one.said.end)
                     || (&request.held, request.received) != (&one.said.held, one.said.received)

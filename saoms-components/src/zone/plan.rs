@@ -50,16 +50,23 @@ enum Outcome {
 /// looked for again after twice as many rounds.
 const PATIENCE: u32 = 4;
 
+/// Maximum number of blocks that are granted ahead of a robot.
+pub(crate) const MOST_AHEAD: u32 = 16;
+
 /// Maximum number of searches for a maneuver in one round.
 const SEARCHES: usize = 2;
 
-/// Plans a round: grants blocks, and returns the robots to which something was granted.
-pub(crate) fn plan(
-    ledger: &mut Ledger,
-    maneuvers: &mut Vec<Maneuver>,
-    ground: &mut Ground,
-    ahead: usize,
-) -> BTreeSet<u32> {
+/// What a round of planning changed.
+#[derive(Debug, Default)]
+pub(crate) struct Planned {
+    /// Robots to which something was granted.
+    pub(crate) granted: BTreeSet<u32>,
+    /// Robots that wait for another robot than before, or for none any more.
+    pub(crate) waiting: BTreeSet<u32>,
+}
+
+/// Plans a round: grants blocks, and notes which robots wait for which.
+pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &mut Ground, ahead: usize) -> Planned {
     let mut granted = BTreeSet::new();
     maneuvers.retain_mut(|maneuver| maneuver.go_on(ledger, &mut granted));
     let mut order: Vec<(Reverse<u64>, u32)> = ledger
@@ -80,7 +87,8 @@ pub(crate) fn plan(
     if let Some(maneuver) = round.maneuver(&order) {
         maneuvers.push(maneuver);
     }
-    round.granted
+    let waiting = order.iter().map(|(_, robot)| *robot).filter(|robot| round.note_wait(*robot)).collect();
+    Planned { granted: round.granted, waiting }
 }
 
 impl Round<'_> {
@@ -175,17 +183,33 @@ impl Round<'_> {
         candidates.into_iter().map(|(_, _, block)| block).collect()
     }
 
-    /// Grants a robot further blocks ahead where no other robot is near, so that it need not wait for grants.
+    /// Notes for which robot this one waits; `true` if it waited for another one before, or for none.
+    fn note_wait(&mut self, robot: u32) -> bool {
+        let Some(member) = self.ledger.member(robot) else { return false };
+        let (end, goal) = (member.end(), member.request.goal);
+        // A robot that can still drive does not wait.
+        let waits = member.waited > 0 && member.steps.len() < 2;
+        let best = if waits { self.candidates(end, goal, false).into_iter().next() } else { None };
+        let in_the_way = best.and_then(|block| Some((block, self.ledger.holder(block)?)));
+        let Some(member) = self.ledger.member_mut(robot) else { return false };
+        std::mem::replace(&mut member.in_the_way, in_the_way) != in_the_way
+    }
+
+    /// Grants a robot further blocks ahead: those that it needs so that it does not wait for grants, and some more
+    /// where no other robot is near.
     fn extend(&mut self, robot: u32) {
         while let Some(member) = self.ledger.member(robot)
             && !self.busy.contains(&robot)
             && member.wants_to_go()
             && !member.steps.is_empty()
-            && member.steps.len() <= self.ahead
         {
             let (end, goal) = (member.end(), member.request.goal);
+            let is_needed = member.steps.len() <= member.request.ahead.min(MOST_AHEAD) as usize;
+            if !is_needed && member.steps.len() > self.ahead {
+                return;
+            }
             let best = self.candidates(end, goal, false).into_iter().next();
-            let Some(block) = best.filter(|block| self.is_quiet(*block, robot)) else { return };
+            let Some(block) = best.filter(|block| is_needed || self.is_quiet(*block, robot)) else { return };
             if !self.ledger.grant(robot, block) {
                 return;
             }

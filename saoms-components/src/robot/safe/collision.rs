@@ -3,10 +3,11 @@ use saoms_api::{Context, Failure, Field, Loop, LoopClass, Record, Recordable, Sa
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
 use crate::robot::lasting::lasting;
+use crate::robot::zone_client::InTheWay;
 
 /// Lets the robot enter the block that it wants only once no other robot holds or wants it.
 ///
-/// `Traffic` decides about the right of way.
+/// `Traffic` decides about the right of way; in a site with zones, the zone says for which robot it has to wait.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.CollisionMS",
@@ -84,12 +85,11 @@ impl Loop for SafeCollision {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<SafeCollisionSymptom>, Failure> {
-        if knowledge.zones.is_some() {
-            // A zone grants each block to one robot.
-            return Ok(None);
-        }
-        let RobotKnowledge { traffic, next, .. } = knowledge;
-        let taken = traffic.wanted(*next).and_then(|block| Some(Wait { block, robot: traffic.in_the_way(block)? }));
+        let RobotKnowledge { traffic, next, zones, .. } = knowledge;
+        let taken = match zones {
+            Some(zones) => zones.in_the_way().map(|InTheWay { block, robot }| Wait { block, robot }),
+            None => traffic.wanted(*next).and_then(|block| Some(Wait { block, robot: traffic.in_the_way(block)? })),
+        };
         knowledge.yield_to(taken.map(|wait| wait.robot), context.now());
         if taken == self.waits {
             return Ok(None);

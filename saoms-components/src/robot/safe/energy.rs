@@ -14,6 +14,12 @@ use super::pace::Pace;
 /// With less than 12, robots in the simulated fleets of the tests sometimes ran out of battery.
 pub(in crate::robot) const RESERVE: u32 = 14;
 
+/// Number of late answers of zones for which energy is reserved.
+const LATE_ANSWERS: u32 = 2;
+
+/// Maximum number of executions that zones take to answer where all messages arrive at once.
+const USUAL_LATENCY: u32 = 2;
+
 /// Minimum reserve, in executions.
 const LEAST_RESERVE: u32 = 2;
 
@@ -178,10 +184,12 @@ impl RobotKnowledge {
         if usual <= left {
             return Feasibility::Enough;
         }
+        // A full battery lasts once zones answer soon again.
+        let is_late = self.latency() > USUAL_LATENCY && usual > full;
         match (self.is_within(job, full), left == full) {
             (false, _) => Feasibility::Never,
-            (true, true) => Feasibility::Enough,
-            (true, false) => Feasibility::Needs(usual.min(full)),
+            (true, true) if !is_late => Feasibility::Enough,
+            (true, _) => Feasibility::Needs(usual.min(full)),
         }
     }
 
@@ -266,7 +274,9 @@ impl RobotKnowledge {
 
     fn usual_reserve(&self) -> u32 {
         let full = self.executions_when_full();
-        RESERVE.saturating_mul(self.tempo()).max(full / 4).min(full / 3)
+        let usual = RESERVE.saturating_mul(self.tempo()).max(full / 4).min(full / 3);
+        // Where zones answer late, robots that meet wait for them.
+        usual.saturating_add(LATE_ANSWERS * self.latency().saturating_sub(USUAL_LATENCY))
     }
 
     /// Number of executions for the rest of a job from here, and the way to the charger.
@@ -299,7 +309,18 @@ impl RobotKnowledge {
 
     /// Number of executions from a block to the charger.
     pub(super) fn home(&mut self, from: Block) -> u32 {
-        self.energy.pace.job(self.routes.between(from, self.charge_block), 0)
+        let way = self.routes.between(from, self.charge_block);
+        self.home_along(way)
+    }
+
+    /// Number of executions of a way to a charger, on which the robot first waits for grants.
+    fn home_along(&self, way: u32) -> u32 {
+        self.energy.pace.job(way, 0).saturating_add(if way == 0 { 0 } else { self.latency() })
+    }
+
+    /// Number of executions that zones take to answer; 0 where there are none.
+    fn latency(&self) -> u32 {
+        self.zones.as_ref().map_or(0, |zones| zones.latency())
     }
 
     /// True if the battery lasts for the way to another charger with the usual reserve, or is full.
@@ -310,7 +331,8 @@ impl RobotKnowledge {
 
     /// Number of executions from the robot's next block to another charger.
     pub(super) fn home_to(&mut self, charger: Block) -> u32 {
-        self.energy.pace.job(self.routes.between(self.next, charger), 0)
+        let way = self.routes.between(self.next, charger);
+        self.home_along(way)
     }
 }
 

@@ -43,7 +43,11 @@ impl Waiting {
                 if is_due && now.since(way.since) >= context.period().saturating_mul(executions) {
                     way.is_told = true;
                     let since = way.since;
-                    match knowledge.traffic.blocker(at, goal, &knowledge.routes) {
+                    let in_the_way = match &knowledge.zones {
+                        Some(zones) => zones.in_the_way().map(|wait| wait.robot),
+                        None => knowledge.traffic.blocker(at, goal, &knowledge.routes),
+                    };
+                    match in_the_way {
                         Some(robot) => {
                             info!(context, "has been waiting at {at} for robot {robot} since {since}")
                         }

@@ -8,7 +8,10 @@ use crate::hardware::{Action, ActionKind};
 use crate::messages::Standing;
 use crate::robot::HEARD;
 use crate::robot::RobotKnowledge;
-use crate::zone::Wish;
+use crate::zone::{MOST_AHEAD, Wish};
+
+/// Maximum number of blocks ahead that a robot needs because zones answer late.
+const MOST_BY_LATENCY: u32 = 8;
 
 impl RobotKnowledge {
     /// Takes in what zones say.
@@ -32,11 +35,13 @@ impl RobotKnowledge {
         }
         self.aim_in_zones();
         let begun = self.begun_blocks();
+        let ahead = self.blocks_ahead();
         let wish = Wish {
             goal: self.goal_in_zones(),
             charger: self.charge_block,
             rank: self.leg.priority(self.number).rank,
             standing: self.standing(),
+            ahead,
         };
         let Some(zones) = &mut self.zones else { return Ok(()) };
         if wish.standing != Standing::MakesWay {
@@ -53,14 +58,15 @@ impl RobotKnowledge {
         let (charger, begun) = (self.charge_block, self.begun_blocks());
         let Some(zones) = &mut self.zones else { return Ok(()) };
         zones.stay(begun);
-        zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost })
+        zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0 })
     }
 
     /// Releases blocks ahead that do not lead where the robot wants to go now.
     pub(super) fn aim_in_zones(&mut self) {
         let (goal, begun) = (self.goal_in_zones(), self.begun_blocks());
-        if let Some(zones) = &mut self.zones {
-            zones.aim(goal, begun);
+        let RobotKnowledge { zones, routes, .. } = self;
+        if let Some(zones) = zones {
+            zones.aim(goal, begun, |from, to| routes.between(from, to));
         }
     }
 
@@ -70,6 +76,16 @@ impl RobotKnowledge {
         let waits = zones.next() != Some(action.block);
         zones.asked = Some(action.block).filter(|_| waits);
         waits
+    }
+
+    /// Number of blocks that have to be granted ahead. A robot that has to reach its charger in time needs the whole way
+    /// there; another one as many as it drives until it has an answer.
+    fn blocks_ahead(&self) -> u32 {
+        if self.leg.urgency == Urgency::Energy {
+            return MOST_AHEAD;
+        }
+        let latency = self.zones.as_ref().map_or(0, |zones| zones.latency());
+        latency.div_ceil(self.energy.executions_of_move().max(1)).min(MOST_BY_LATENCY)
     }
 
     /// Number of blocks of its passage that it is on, or has begun to enter.
