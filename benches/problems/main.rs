@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use std::{fs, thread};
 
 use clap::Parser;
-use saoms_testkit::Pace;
+use saoms_testkit::ProblemFleet;
 use serde::Serialize;
 
 use assignment::Assignment;
@@ -51,6 +51,12 @@ struct Arguments {
     /// Which robot does which task, in the reference.
     #[arg(long, value_enum, default_value_t = Assignment::Hungarian)]
     assignment: Assignment,
+    /// Which robot does which luggage in ours.
+    #[arg(long, default_value = "optimal", value_parser = ["robots", "oldest", "optimal"])]
+    ours: String,
+    /// Without a zone: robots agree among themselves on who enters a block.
+    #[arg(long)]
+    safe: bool,
     /// Executions of each robot in a step.
     #[arg(long, default_value_t = 5)]
     executions: u32,
@@ -80,6 +86,14 @@ struct Row {
     holding: Vec<Solved>,
 }
 
+impl Arguments {
+    fn fleet(&self, steps: u32) -> ProblemFleet {
+        let names = ["robots", "oldest", "optimal"];
+        let assignment = names.into_iter().find(|name| *name == self.ours).unwrap_or(names[2]);
+        ProblemFleet { executions: self.executions, steps, zone: !self.safe, assignment, ..ProblemFleet::default() }
+    }
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if !arguments.bench {
@@ -100,8 +114,7 @@ fn run(arguments: &Arguments) -> Outcome<()> {
         Some(path) => {
             let problem = instances::read(path)?;
             if let Some(to) = &arguments.composite {
-                let pace = Pace { executions: arguments.executions, steps: arguments.steps, ..Pace::default() };
-                return Ok(fs::write(to, problem.composite(&pace))?);
+                return Ok(fs::write(to, problem.composite(&arguments.fleet(arguments.steps)))?);
             }
             let (name, source) = (path.display().to_string(), Source::File(path.clone()));
             vec![Instance { name, source, steps: arguments.steps, published: "-" }]
@@ -126,7 +139,7 @@ fn run(arguments: &Arguments) -> Outcome<()> {
 
 /// Solves a problem with each seed, the reference beside ours.
 fn measure(instance: &Instance, arguments: &Arguments) -> Outcome<Row> {
-    let Arguments { assignment, executions, .. } = arguments;
+    let assignment = &arguments.assignment;
     let Instance { name, source, steps, .. } = instance;
     let name = name.clone();
     let mut row = Row { name, tasks: 0, ours: Vec::new(), following: Vec::new(), holding: Vec::new() };
@@ -136,7 +149,7 @@ fn measure(instance: &Instance, arguments: &Arguments) -> Outcome<Row> {
         let reference = |occupation| reference::solve(&problem, (occupation, *assignment), *steps, seed);
         let (following, holding, ours) = thread::scope(|scope| {
             let both = scope.spawn(|| (reference(Occupation::Next), reference(Occupation::Both)));
-            let ours = ours::solve(&problem, *executions, *steps, seed);
+            let ours = ours::solve(&problem, &arguments.fleet(*steps), seed);
             let both = both.join().map_err(|_| "the reference panicked")?;
             Outcome::Ok((both.0, both.1, ours?))
         })?;

@@ -8,7 +8,7 @@ use saoms_api::host::TopicDeclaration;
 use saoms_components::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use saoms_core::observe::{Interest, Observer, SentMessage};
 use saoms_core::schedule::{RunningFleet, Settings};
-use saoms_testkit::{Pace, Problem};
+use saoms_testkit::{Problem, ProblemFleet};
 
 use crate::Solved;
 use crate::common::{Outcome, deploy};
@@ -55,23 +55,22 @@ impl Observer for Watch {
     }
 }
 
-/// Runs the fleet of a problem for this number of steps at most.
-pub(crate) fn solve(problem: &Problem, executions: u32, steps: u32, seed: u64) -> Outcome<Solved> {
-    let pace = Pace { executions, steps, ..Pace::default() };
-    let assembly = deploy::checked(problem.composite(&pace))?.assembly;
+/// Runs the fleet of a problem for its number of steps at most.
+pub(crate) fn solve(problem: &Problem, fleet: &ProblemFleet, seed: u64) -> Outcome<Solved> {
+    let assembly = deploy::checked(problem.composite(fleet))?.assembly;
     // The tasks appear after the first step.
-    let limit = pace.step * (steps + 1);
+    let limit = fleet.step * (fleet.steps + 1);
     let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
     let watch = Arc::new(Watch::default());
     let report = deploy::finish(RunningFleet::start(assembly, settings, vec![watch.clone()])?)?;
     let tasks = watch.0.lock().unwrap_or_else(PoisonError::into_inner);
-    let in_steps = |time: Duration| time.div_duration_f64(pace.step).ceil();
+    let in_steps = |time: Duration| time.div_duration_f64(fleet.step).ceil();
     let waiting = tasks.waiting.values().map(|since| limit.saturating_sub(*since)).max();
     let collisions = &report.sections["collisions"];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a run has fewer steps")]
     Ok(Solved {
         finished: tasks.finished,
-        makespan: in_steps(tasks.last.saturating_sub(pace.step)) as u32,
+        makespan: in_steps(tasks.last.saturating_sub(fleet.step)) as u32,
         longest_wait: in_steps(tasks.longest.max(waiting.unwrap_or_default())) as u32,
         collisions: ["vertex", "swap"].iter().filter_map(|kind| collisions[kind].as_u64()).sum(),
     })

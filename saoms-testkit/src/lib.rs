@@ -77,7 +77,7 @@ pub use loop_bench::LoopBench;
 #[cfg(feature = "fleets")]
 pub use moment::{Expect, Moment, PointInTime};
 #[cfg(feature = "fleets")]
-pub use problem::{Pace, Problem, ProblemFault, Task};
+pub use problem::{Problem, ProblemFault, ProblemFleet, Task};
 #[cfg(feature = "fleets")]
 pub use run::Run;
 #[cfg(feature = "fleets")]

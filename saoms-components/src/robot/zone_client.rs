@@ -202,7 +202,8 @@ impl ZoneClient {
 
     /// The robot wants to go there, or nowhere. If it wanted to go elsewhere before, it releases its passage, but for
     /// the first `begun` blocks, which it is on or has begun to enter, and those after them that lead to the new goal:
-    /// `way` is the number of moves between two blocks. What was granted while it had no goal is to make way for others.
+    /// `way` is the number of moves between two blocks. What was granted while it had no goal is to make way for
+    /// others.
     pub(crate) fn aim(&mut self, goal: Option<Block>, begun: usize, mut way: impl FnMut(Block, Block) -> u32) {
         let before = std::mem::replace(&mut self.goal, goal);
         if let Some(passage) = &mut self.passage

@@ -14,6 +14,7 @@ mod map;
 mod masters;
 mod missing_loop;
 mod number;
+mod peers;
 mod robots;
 pub(crate) mod scenario;
 mod shifts;
@@ -47,4 +48,6 @@ saoms_api::fleet_rules!(
     classic_walls::RULE,
     worlds::slow::RULE,
     zones::RULE,
+    peers::FAULTS,
+    peers::BROKER,
 );

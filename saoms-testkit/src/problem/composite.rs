@@ -8,38 +8,47 @@ use saoms_components::grid::{Block, Map};
 
 use super::{Problem, Task};
 
-/// Times of a fleet that solves a [`Problem`].
+/// The times and policies of a fleet that solves a [`Problem`].
 #[derive(Clone, Copy, Debug)]
-pub struct Pace {
+pub struct ProblemFleet {
     /// Time of a move to the next block.
     pub step: Duration,
     /// Number of executions of robots, master and environment in a step.
     pub executions: u32,
     /// Number of steps that the run lasts: no more tasks are written than robots can do in that time.
     pub steps: u32,
+    /// True if a zone grants the robots the blocks that they enter; otherwise they agree among themselves.
+    pub zone: bool,
+    /// Who assigns luggage: the property `assignment` of the master.
+    pub assignment: &'static str,
 }
 
-impl Default for Pace {
-    /// Five executions in a step of one second, for a thousand steps.
-    fn default() -> Pace {
-        Pace { step: Duration::from_secs(1), executions: 5, steps: 1000 }
+impl Default for ProblemFleet {
+    /// Five executions in a step of one second, for a thousand steps, with a zone and the optimal assignment.
+    fn default() -> ProblemFleet {
+        ProblemFleet { step: Duration::from_secs(1), executions: 5, steps: 1000, zone: true, assignment: "optimal" }
     }
 }
 
 impl Problem {
     /// A composite that solves the problem: robots without a battery on a `saoms.World`, and an environment with the
     /// tasks as its scenario. They appear after the first step: then the robots know each other.
-    pub fn composite(&self, pace: &Pace) -> String {
-        let period = format_duration(pace.step / pace.executions.max(1));
-        let step = format_duration(pace.step);
+    pub fn composite(&self, fleet: &ProblemFleet) -> String {
+        let period = format_duration(fleet.step / fleet.executions.max(1));
+        let step = format_duration(fleet.step);
         let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
             <composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:problem\" \
             name=\"problem\">\n"
             .to_owned();
         let map = rows(&self.map);
         component(&mut text, "World", "World", &[("period", &step), ("moveTime", &step), ("map", &map)], "");
-        component(&mut text, "Master", "MasterEnvironment", &[("period", &period)], "");
-        let scenario = self.scenario(pace);
+        let world = "    <reference name=\"world\" target=\"World\"/>\n";
+        if fleet.zone {
+            component(&mut text, "Zone", "Zone", &[("period", &period)], world);
+        }
+        let master = [("period", period.as_str()), ("assignment", fleet.assignment)];
+        component(&mut text, "Master", "MasterEnvironment", &master, "");
+        let scenario = self.scenario(fleet);
         let most = self.revealed.map(|most| most.to_string());
         let most = most.as_deref().map(|most| ("mostOpen", most));
         let properties: Vec<(&str, &str)> =
@@ -48,7 +57,6 @@ impl Problem {
         for (index, start) in self.starts.iter().enumerate() {
             let (x, y) = (start.x.to_string(), start.y.to_string());
             let properties = [("period", period.as_str()), ("chargeX", &x), ("chargeY", &y), ("discharge", "0")];
-            let world = "    <reference name=\"world\" target=\"World\"/>\n";
             component(&mut text, &format!("Robot{}", index + 1), "Robot", &properties, world);
         }
         text.push_str("</composite>\n");
@@ -57,10 +65,10 @@ impl Problem {
 
     /// The tasks as lines of a scenario, no more than robots can do: a task takes at least as many steps as its blocks
     /// are apart.
-    fn scenario(&self, pace: &Pace) -> String {
+    fn scenario(&self, fleet: &ProblemFleet) -> String {
         let mut text = String::new();
-        let start = format_duration(pace.step);
-        let steps = u64::from(pace.steps);
+        let start = format_duration(fleet.step);
+        let steps = u64::from(fleet.steps);
         let mut left = vec![steps; self.starts.len()];
         let mut at = self.starts.clone();
         // Short tasks may be done first.

@@ -7,7 +7,7 @@ mod lorr;
 
 use saoms_components::grid::{Block, Map};
 
-pub use composite::Pace;
+pub use composite::ProblemFleet;
 pub use fault::ProblemFault;
 
 /// A map, robots, and what they have to do.
@@ -15,10 +15,10 @@ pub use fault::ProblemFault;
 /// ```
 /// use std::path::Path;
 /// use std::time::Duration;
-/// use saoms_testkit::{Fleet, Pace, Problem};
+/// use saoms_testkit::{Fleet, ProblemFleet, Problem};
 ///
 /// let problem = Problem::read(Path::new("../benches/problems/traps/corners.json")).unwrap();
-/// let text = problem.composite(&Pace::default());
+/// let text = problem.composite(&ProblemFleet::default());
 /// let run = Fleet::of_text(text).run(1, Duration::from_secs(200));
 /// assert_eq!(run.sections["errands"]["finished"], 2);
 /// ```

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use saoms_components::grid::{Block, Map};
-use saoms_testkit::{Fleet, Pace, Problem, Task};
+use saoms_testkit::{Fleet, Problem, ProblemFleet, Task};
 
 const TRAPS: &str = "../benches/problems/traps";
 
@@ -81,7 +81,7 @@ fn faults_are_told_at_their_place() {
 fn a_fleet_visits_all_blocks_of_a_problem() {
     for trap in ["string", "corners"] {
         let problem = Problem::read(&Path::new(TRAPS).join(trap).with_extension("json")).unwrap();
-        let run = Fleet::of_text(problem.composite(&Pace::default())).run(1, Duration::from_secs(300));
+        let run = Fleet::of_text(problem.composite(&ProblemFleet::default())).run(1, Duration::from_secs(300));
         assert_eq!(run.sections["errands"]["finished"], 2, "{trap}:\n{}", run.log());
         assert_eq!(run.sections["collisions"]["vertex"], 0, "{trap}");
     }
@@ -96,6 +96,6 @@ fn random_luggage_follows_from_map_and_seed() {
     assert_ne!(one.tasks, other.tasks);
     let stops = one.tasks.iter().flat_map(Task::stops);
     assert!(stops.chain(one.starts.clone()).all(|block| block.x < 3), "the right part cannot be reached");
-    let run = Fleet::of_text(one.composite(&Pace::default())).run(7, Duration::from_secs(500));
+    let run = Fleet::of_text(one.composite(&ProblemFleet::default())).run(7, Duration::from_secs(500));
     assert_eq!(run.sections["luggage"]["delivered"], 9, "{}", run.log());
 }

@@ -170,7 +170,9 @@ fn what_another_program_may_supply_is_a_warning() {
         let (alone, served) = (with(&[], scenario, divided), with(&url, scenario, divided));
         assert_eq!(alone.len(), 1, "{alone:?}");
         assert!(alone[0].starts_with(&format!("error {code}")), "{alone:?}");
-        assert_eq!(served, [alone[0].replace("error", "warning")]);
+        let peers =
+            "warning S5025 a robot of the policy `safe` sends its position through a broker, and its site has no zone";
+        assert_eq!(served, [alone[0].replace("error", "warning"), peers.to_owned()]);
     }
 }
 

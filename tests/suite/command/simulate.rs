@@ -9,7 +9,10 @@ use crate::support::{empty_folder, root, saoms_in, stdout};
 
 fn simulate(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
     let composite = root().join("composites/airport.composite");
-    let composite = composite.to_str().unwrap();
+    simulate_file(folder, composite.to_str().unwrap(), arguments)
+}
+
+fn simulate_file(folder: &Path, composite: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     let output = saoms_in(folder, &[&["simulate", composite, "--for", "5min"], arguments].concat());
     (output.status.code(), stdout(&output), String::from_utf8_lossy(&output.stderr).into_owned())
 }
@@ -36,7 +39,12 @@ fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
     let script = "at 1s for 20s delay 300ms\nat 1s for 1s jitter 1ms on CSMSTOPIC\nat 3s fail MasterRobot\n";
     fs::write(folder.join("faults.txt"), script).unwrap();
     let arguments = ["--seeds", "3", "--faults", "faults.txt", "--report", "json"];
-    let (code, told, _) = simulate(&folder, &arguments);
+    // Without a zone, robots collide if they hear of each other too late.
+    let airport = fs::read_to_string(root().join("composites/airport.composite")).unwrap();
+    let (before, after) = airport.split_once("  <component name=\"Zone\">").unwrap();
+    let (_, after) = after.split_once("</component>").unwrap();
+    fs::write(folder.join("peers.composite"), [before, after].concat()).unwrap();
+    let (code, told, _) = simulate_file(&folder, "peers.composite", &arguments);
     assert_eq!(code, Some(1), "{told}");
     let report: Value = serde_json::from_str(&told).unwrap();
     let ways = |value: &Value| value["delay"].as_u64().unwrap() > 100 && value["fail"] == 3;
@@ -56,7 +64,7 @@ fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
     let seen = String::from_utf8_lossy(&again.stderr).into_owned();
     assert_eq!(again.status.code(), Some(1), "{seen}");
     assert!(seen.contains(&format!("1 no two robots in a block: {first}\n")), "{seen}");
-    let (_, twice, _) = simulate(&folder, &arguments);
+    let (_, twice, _) = simulate_file(&folder, "peers.composite", &arguments);
     let twice: Value = serde_json::from_str(&twice).unwrap();
     assert_eq!(report["results"], twice["results"], "in other processes it is the same");
 }

@@ -261,8 +261,8 @@ fn airport() -> String {
 #[test]
 fn the_airport_survives_a_failure_of_any_component_at_any_time() {
     let names = [
-        "World", "Environment", "MasterEnvironment", "MasterRobot", "Robot001", "Robot002", "Robot003", "Robot004",
-        "Robot005", "Robot007", "Robot010",
+        "World", "Zone", "Environment", "MasterEnvironment", "MasterRobot", "Robot001", "Robot002", "Robot003",
+        "Robot004", "Robot005", "Robot007", "Robot010",
     ];
     for (case, name) in names.into_iter().enumerate() {
         let seed = case as u64;
