@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use saoms_api::host::TopicDeclaration;
-use saoms_components::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
+use saoms_components::messages::{
+    ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage, VISIT, Visit,
+};
 use saoms_core::observe::{Interest, Observer, SentMessage};
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_testkit::{Problem, ProblemFleet};
@@ -19,11 +21,36 @@ struct Watch(Mutex<Tasks>);
 
 #[derive(Default)]
 struct Tasks {
-    /// When each task that no robot has taken was requested.
-    waiting: HashMap<u32, Duration>,
+    open: HashMap<u32, Open>,
     longest: Duration,
     last: Duration,
     finished: usize,
+}
+
+/// A task that is visible, and not done.
+struct Open {
+    since: Duration,
+    /// When the robot that has it now took it.
+    taken: Option<Duration>,
+}
+
+impl Tasks {
+    fn show(&mut self, number: u32, since: Duration) {
+        self.open.entry(number).or_insert(Open { since, taken: None });
+    }
+
+    fn take(&mut self, number: u32, taken: Option<Duration>) {
+        if let Some(open) = self.open.get_mut(&number) {
+            open.taken = taken;
+        }
+    }
+
+    fn finish(&mut self, number: u32, at: Duration) {
+        let Some(open) = self.open.remove(&number) else { return };
+        self.longest = self.longest.max(open.taken.unwrap_or(at) - open.since);
+        self.finished += 1;
+        self.last = at;
+    }
 }
 
 impl Observer for Watch {
@@ -32,24 +59,23 @@ impl Observer for Watch {
     }
 
     fn wants_topic(&self, name: &str, _: &TopicDeclaration<'_>) -> bool {
-        name == EVENT_LUGGAGE.name()
+        [EVENT_LUGGAGE.name(), ENVIRONMENT.name(), VISIT.name()].contains(&name)
     }
 
     fn message(&self, sent: &SentMessage) {
-        let Some(event) = sent.message.get::<EventLuggage>() else { return };
         let at = sent.message.header().sent.since(saoms_api::Time::START);
         let mut tasks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        match event.stage {
-            LuggageStage::Request if event.robot == 0 => _ = tasks.waiting.entry(event.luggage).or_insert(at),
-            LuggageStage::Taken => {
-                if let Some(since) = tasks.waiting.remove(&event.luggage) {
-                    tasks.longest = tasks.longest.max(at - since);
-                }
-            }
-            LuggageStage::Delivered => {
-                tasks.finished += 1;
-                tasks.last = at;
-            }
+        if let Some(event) = sent.message.get::<EnvironmentEvent>() {
+            event.luggage.iter().for_each(|luggage| tasks.show(luggage.luggage, at));
+        }
+        if let Some(visit) = sent.message.get::<Visit>() {
+            tasks.show(visit.visit, at);
+        }
+        let Some(said) = sent.message.get::<EventLuggage>() else { return };
+        match said.stage {
+            LuggageStage::Taken => tasks.take(said.luggage, Some(at)),
+            LuggageStage::Release => tasks.take(said.luggage, None),
+            LuggageStage::Delivered => tasks.finish(said.luggage, at),
             _ => {}
         }
     }
@@ -65,7 +91,7 @@ pub(crate) fn solve(problem: &Problem, fleet: &ProblemFleet, seed: u64) -> Outco
     let report = deploy::finish(RunningFleet::start(assembly, settings, vec![watch.clone()])?)?;
     let tasks = watch.0.lock().unwrap_or_else(PoisonError::into_inner);
     let in_steps = |time: Duration| time.div_duration_f64(fleet.step).ceil();
-    let waiting = tasks.waiting.values().map(|since| limit.saturating_sub(*since)).max();
+    let waiting = tasks.open.values().map(|open| open.taken.unwrap_or(limit).saturating_sub(open.since)).max();
     let collisions = &report.sections["collisions"];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a run has fewer steps")]
     Ok(Solved {

@@ -33,6 +33,8 @@ pub(crate) struct ZoneClient {
     /// Number of executions since the last request.
     silent: u32,
     goal: Option<Block>,
+    /// For each zone, the first request with that goal.
+    aimed: Vec<Aimed>,
     /// Block to which a loop ordered the robot, and that is not granted yet.
     pub(super) asked: Option<Block>,
     /// The block that another robot has to leave first, and that robot.
@@ -48,8 +50,16 @@ pub(crate) struct ZoneMemory {
     held: Vec<HeldMemory>,
     links: Vec<LinkMemory>,
     goal: Option<Block>,
+    aimed: Vec<Aimed>,
     in_the_way: Option<InTheWay>,
     latency: Latency,
+}
+
+/// A zone, and the number of a request to it.
+#[derive(Clone, Copy, Debug, Field)]
+struct Aimed {
+    zone: u32,
+    number: u64,
 }
 
 /// A block, and the robot that has to leave it first.
@@ -90,6 +100,7 @@ impl ZoneClient {
             validator: MessageValidator::default(),
             silent: 0,
             goal: None,
+            aimed: Vec::new(),
             asked: None,
             in_the_way: None,
             latency: Latency::default(),
@@ -110,6 +121,7 @@ impl ZoneClient {
             held: held.collect(),
             links: links.collect(),
             goal: self.goal,
+            aimed: self.aimed.clone(),
             in_the_way: self.in_the_way,
             latency: self.latency.clone(),
         }
@@ -129,7 +141,7 @@ impl ZoneClient {
             heard: link.heard,
         });
         self.passage = Some(Passage::with(robot, memory.incarnation, held.collect(), links.collect()));
-        self.goal = memory.goal;
+        (self.goal, self.aimed) = (memory.goal, memory.aimed);
         (self.in_the_way, self.latency) = (memory.in_the_way, memory.latency);
     }
 
@@ -142,13 +154,15 @@ impl ZoneClient {
         }
     }
 
-    /// Takes in what zones say.
-    pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) {
-        let ZoneClient { passage: Some(passage), territories, grants, validator, in_the_way, latency, .. } = self
+    /// Takes in what zones say. True if there are grants for an earlier goal among them, whose blocks may lead elsewhere.
+    pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) -> bool {
+        let ZoneClient { passage: Some(passage), territories, grants, validator, in_the_way, latency, aimed, .. } =
+            self
         else {
-            return;
+            return false;
         };
         latency.begin_execution();
+        let mut is_late = false;
         for (header, territory) in context.receive(territories).with_headers() {
             if validator.accepts(territory, header, area, context) {
                 passage.hear_territory(territory);
@@ -161,8 +175,10 @@ impl ZoneClient {
                 let waits = grant.waits_for != 0;
                 *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
                 latency.hears(grant.zone, grant.heard);
+                is_late |= aimed.iter().any(|one| one.zone == grant.zone && one.number > grant.heard);
             }
         }
+        is_late
     }
 
     /// Hears grants around the robot alone, on a map where that saves something.
@@ -188,6 +204,11 @@ impl ZoneClient {
         self.in_the_way.filter(|wait| passage.next().is_none() && wait.block.distance(passage.end()) == 1)
     }
 
+    /// True if the robot may drive on.
+    pub(crate) fn may_drive(&self) -> bool {
+        self.next().is_some()
+    }
+
     /// Number of executions that zones take to answer.
     pub(crate) fn latency(&self) -> u32 {
         self.latency.executions()
@@ -204,12 +225,19 @@ impl ZoneClient {
     /// the first `begun` blocks, which it is on or has begun to enter, and those after them that lead to the new goal:
     /// `way` is the number of moves between two blocks. What was granted while it had no goal is to make way for
     /// others.
-    pub(crate) fn aim(&mut self, goal: Option<Block>, begun: usize, mut way: impl FnMut(Block, Block) -> u32) {
+    pub(crate) fn aim(&mut self, goal: Option<Block>, begun: usize, way: impl FnMut(Block, Block) -> u32) {
         let before = std::mem::replace(&mut self.goal, goal);
-        if let Some(passage) = &mut self.passage
-            && before.is_some()
-            && let Some(goal) = goal.filter(|goal| Some(*goal) != before)
-        {
+        if goal != before {
+            self.aimed.clear();
+        }
+        if before.is_some() && goal != before {
+            self.turn(begun, way);
+        }
+    }
+
+    /// Releases the passage, but for its first `begun` blocks, and those after them that lead to the goal.
+    pub(crate) fn turn(&mut self, begun: usize, mut way: impl FnMut(Block, Block) -> u32) {
+        if let (Some(passage), Some(goal)) = (&mut self.passage, self.goal) {
             let left: Vec<u32> = passage.held().iter().map(|held| way(held.step.block, goal)).collect();
             let ahead = left.windows(2).skip(begun.max(1) - 1).take_while(|pair| pair[1] < pair[0]).count();
             passage.give_back(begun.max(1) + ahead);
@@ -237,6 +265,9 @@ impl ZoneClient {
             self.silent = 0;
         }
         for request in requests {
+            if self.goal == wish.goal && !self.aimed.iter().any(|one| one.zone == request.zone) {
+                self.aimed.push(Aimed { zone: request.zone, number: request.number });
+            }
             self.latency.asks(request.zone, request.number);
             context.send(&self.requests, request)?;
         }

@@ -315,7 +315,9 @@ impl RobotKnowledge {
 
     /// Number of executions of a way to a charger, on which the robot first waits for grants.
     fn home_along(&self, way: u32) -> u32 {
-        self.energy.pace.job(way, 0).saturating_add(if way == 0 { 0 } else { self.latency() })
+        // One that is on the way home already has them.
+        let has_grants = self.must_charge && self.zones.as_ref().is_some_and(|zones| zones.may_drive());
+        self.energy.pace.job(way, 0).saturating_add(if way == 0 || has_grants { 0 } else { self.latency() })
     }
 
     /// Number of executions that zones take to answer; 0 where there are none.

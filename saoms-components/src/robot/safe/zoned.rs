@@ -19,9 +19,14 @@ impl RobotKnowledge {
     /// # Errors
     /// The region of hearing cannot be set.
     pub(in crate::robot) fn hear_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let RobotKnowledge { zones: Some(zones), routes, number, block, next, .. } = self else { return Ok(()) };
+        let RobotKnowledge { zones: Some(zones), routes, hardware, number, block, next, .. } = self else {
+            return Ok(());
+        };
         zones.enter(context, *number, *block);
-        zones.hear(context, routes.map());
+        if zones.hear(context, routes.map()) {
+            let begun = if hardware.is_moving() { 2 } else { 1 };
+            zones.turn(begun, |from, to| routes.between(from, to));
+        }
         if routes.map().is_some_and(|map| map.size() <= HEARD) { Ok(()) } else { zones.hear_around(context, *next) }
     }
 
@@ -64,8 +69,12 @@ impl RobotKnowledge {
     /// Releases blocks ahead that do not lead where the robot wants to go now.
     pub(super) fn aim_in_zones(&mut self) {
         let (goal, begun) = (self.goal_in_zones(), self.begun_blocks());
+        let stays = self.standing() == Standing::Stays;
         let RobotKnowledge { zones, routes, .. } = self;
         if let Some(zones) = zones {
+            if stays {
+                zones.stay(begun);
+            }
             zones.aim(goal, begun, |from, to| routes.between(from, to));
         }
     }
