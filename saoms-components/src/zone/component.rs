@@ -5,6 +5,7 @@ use saoms_api::{
     record, warn,
 };
 
+use super::deadlock::deadlocks;
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger, Member};
 use super::maneuver::Maneuver;
@@ -43,6 +44,8 @@ pub struct Zone {
     gone: BTreeSet<u32>,
     /// True if the zone grants: all robots have said where they are.
     open: bool,
+    /// Robots that the alerts about deadlocks are about.
+    deadlocked: BTreeSet<u32>,
     /// Robots with an unconfirmed request, and the execution in which that is confirmed at the latest.
     unconfirmed: BTreeMap<u32, u64>,
     #[subscribes(GRANT_REQUEST)]
@@ -78,6 +81,7 @@ impl Component for Zone {
             heard: BTreeSet::new(),
             gone: BTreeSet::new(),
             open: false,
+            deadlocked: BTreeSet::new(),
             unconfirmed: BTreeMap::new(),
             requests: Subscription::default(),
             faults: Subscription::default(),
@@ -165,6 +169,7 @@ impl Zone {
         let Planned { granted, waiting: mut told } = self.plan(state);
         changed |= !granted.is_empty();
         told.extend(granted);
+        self.name_deadlocks(state, context);
         let execution = context.execution();
         self.unconfirmed.retain(|robot, due| {
             let is_due = *due <= execution;
@@ -263,6 +268,30 @@ impl Zone {
             );
         }
         Ok(false)
+    }
+
+    /// Says which robots stand in each other's way for good, so that a person takes one of them away.
+    fn name_deadlocks(&mut self, state: &State, context: &mut Context<'_>) {
+        let waits = state.ledger.members().values().any(|member| member.waited > 0);
+        if !waits && self.deadlocked.is_empty() {
+            return;
+        }
+        let found = deadlocks(&state.ledger);
+        self.deadlocked.retain(|robot| {
+            let lasts = found.iter().any(|deadlock| deadlock.first() == *robot);
+            if !lasts {
+                context.alert_over("deadlock", robot);
+            }
+            lasts
+        });
+        for deadlock in found {
+            if self.deadlocked.insert(deadlock.first()) {
+                let line =
+                    format_args!("{deadlock}: send one of them elsewhere, or take it off the floor and send `gone`");
+                context.alert("deadlock", deadlock.first(), line);
+                context.count("deadlocks", 1);
+            }
+        }
     }
 
     /// Plans a round, if a robot wants to go somewhere.

@@ -158,3 +158,58 @@ fn a_zone_is_closed_until_each_robot_has_said_where_it_is() {
     assert!(log.contains("grants nothing: it waits for robots to say where they are: Robot2"), "{log}");
     assert!(run.time_s > 30.0, "{:?}", run.outcome);
 }
+
+/// Two robots in a corridor without a bay: neither can get past the other one, and the zone names them.
+#[test]
+fn robots_that_cannot_get_past_each_other_are_named() {
+    let robot = |number: u32, column: u32| {
+        format!(
+            r#"<component name="Robot{number}">
+              <implementation.rust class="saoms.Robot"/>
+              <property name="ID">Robot{number}</property>
+              <property name="period">100</property>
+              <property name="chargeX">{column}</property>
+              <property name="chargeY">0</property>
+              <property name="discharge">0</property>
+              <reference name="world" target="World"/>
+            </component>"#
+        )
+    };
+    let corridor = Fleet::of_text(format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="corridor" targetNamespace="urn:corridor">
+          <component name="World">
+            <implementation.rust class="saoms.World"/>
+            <property name="ID">World</property>
+            <property name="period">100</property>
+            <property name="width">6</property>
+            <property name="height">1</property>
+          </component>
+          <component name="Zone">
+            <implementation.rust class="saoms.Zone"/>
+            <property name="ID">Zone</property>
+            <property name="period">100</property>
+            <reference name="world" target="World"/>
+          </component>
+          <component name="Environment">
+            <implementation.rust class="saoms.Environment"/>
+            <property name="ID">Environment</property>
+            <property name="period">100</property>
+            <property name="scenario">at 1s visit (5,0) by Robot1</property>
+          </component>
+          <component name="Master">
+            <implementation.rust class="saoms.MasterEnvironment"/>
+            <property name="ID">Master</property>
+            <property name="period">100</property>
+          </component>
+          {}{}
+        </composite>"#,
+        robot(1, 0),
+        robot(2, 5)
+    ));
+    let run = corridor.run(1, seconds(60));
+    let log = run.log_of("Zone").join("\n");
+    let expected =
+        "robots 1 at (4,0), 2 at (5,0) are in each other's way, and cannot get past: send one of them elsewhere";
+    assert!(log.contains(expected), "{log}\n{}", run.log());
+    assert_eq!(run.count("deadlocks"), 1, "{log}");
+}
