@@ -21,7 +21,8 @@ struct Watch(Mutex<Tasks>);
 
 #[derive(Default)]
 struct Tasks {
-    open: HashMap<u32, Open>,
+    /// All that were visible; `None` for those that are done.
+    shown: HashMap<u32, Option<Open>>,
     longest: Duration,
     last: Duration,
     finished: usize,
@@ -30,24 +31,31 @@ struct Tasks {
 /// A task that is visible, and not done.
 struct Open {
     since: Duration,
-    /// When the robot that has it now took it.
-    taken: Option<Duration>,
+    /// The robot that has it now, and when it took it.
+    taken: Option<(u32, Duration)>,
 }
 
 impl Tasks {
     fn show(&mut self, number: u32, since: Duration) {
-        self.open.entry(number).or_insert(Open { since, taken: None });
+        self.shown.entry(number).or_insert(Some(Open { since, taken: None }));
     }
 
-    fn take(&mut self, number: u32, taken: Option<Duration>) {
-        if let Some(open) = self.open.get_mut(&number) {
-            open.taken = taken;
+    fn take(&mut self, number: u32, robot: u32, at: Duration) {
+        if let Some(Some(open)) = self.shown.get_mut(&number) {
+            open.taken = Some((robot, at));
+        }
+    }
+
+    /// The next robot may have taken it already.
+    fn release(&mut self, number: u32, robot: u32) {
+        if let Some(Some(open)) = self.shown.get_mut(&number) {
+            open.taken = open.taken.filter(|(other, _)| *other != robot);
         }
     }
 
     fn finish(&mut self, number: u32, at: Duration) {
-        let Some(open) = self.open.remove(&number) else { return };
-        self.longest = self.longest.max(open.taken.unwrap_or(at) - open.since);
+        let Some(open) = self.shown.get_mut(&number).and_then(Option::take) else { return };
+        self.longest = self.longest.max(open.taken.map_or(at, |(_, taken)| taken) - open.since);
         self.finished += 1;
         self.last = at;
     }
@@ -73,8 +81,8 @@ impl Observer for Watch {
         }
         let Some(said) = sent.message.get::<EventLuggage>() else { return };
         match said.stage {
-            LuggageStage::Taken => tasks.take(said.luggage, Some(at)),
-            LuggageStage::Release => tasks.take(said.luggage, None),
+            LuggageStage::Taken => tasks.take(said.luggage, said.robot, at),
+            LuggageStage::Release => tasks.release(said.luggage, said.robot),
             LuggageStage::Delivered => tasks.finish(said.luggage, at),
             _ => {}
         }
@@ -91,7 +99,12 @@ pub(crate) fn solve(problem: &Problem, fleet: &ProblemFleet, seed: u64) -> Outco
     let report = deploy::finish(RunningFleet::start(assembly, settings, vec![watch.clone()])?)?;
     let tasks = watch.0.lock().unwrap_or_else(PoisonError::into_inner);
     let in_steps = |time: Duration| time.div_duration_f64(fleet.step).ceil();
-    let waiting = tasks.open.values().map(|open| open.taken.unwrap_or(limit).saturating_sub(open.since)).max();
+    let waiting = tasks
+        .shown
+        .values()
+        .flatten()
+        .map(|open| open.taken.map_or(limit, |(_, taken)| taken).saturating_sub(open.since))
+        .max();
     let collisions = &report.sections["collisions"];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a run has fewer steps")]
     Ok(Solved {

@@ -152,6 +152,7 @@ impl Component for Robot {
         if self.knowledge.shut_down {
             self.knowledge.hear_zones(context)?;
             self.knowledge.ask_zones(context)?;
+            self.knowledge.repeat_state(context)?;
             return self.knowledge.stop_for_good(context);
         }
         let entered = self.enter(context)?;
@@ -180,6 +181,7 @@ impl Component for Robot {
             self.knowledge.carry_out(&self.loops, context)?;
             self.knowledge.end_execution(was_critical, context)?;
             self.knowledge.ask_zones(context)?;
+            self.knowledge.repeat_state(context)?;
             self.knowledge.note_waiting();
             // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
             if in_charge || !self.knowledge.variables.in_charge {

@@ -4,7 +4,7 @@ use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
 use super::latency::Latency;
 use crate::grid::{Block, Map};
-use crate::messages::{GRANT, GRANT_REQUEST, Grant, GrantRequest, Step, TERRITORY, Territory};
+use crate::messages::{GRANT, GRANT_REQUEST, Grant, GrantRequest, Position, RobotList, Step, TERRITORY, Territory};
 use crate::validation::MessageValidator;
 use crate::zone::{Held, Link, Passage, Wish};
 
@@ -28,6 +28,9 @@ pub(crate) struct ZoneClient {
     territories: Subscription<Territory>,
     grants: Subscription<Grant>,
     requests: Publisher<GrantRequest>,
+    /// For repetitions of what loops said; `None` where the robot has no loop that says it.
+    pub(super) positions: Option<Publisher<Position>>,
+    pub(super) robots: Option<Publisher<RobotList>>,
     /// Zones and the components that speak for them.
     validator: MessageValidator,
     /// Number of executions since the last request.
@@ -97,6 +100,8 @@ impl ZoneClient {
             territories: context.subscribe(&TERRITORY)?,
             grants: context.subscribe(&GRANT)?,
             requests: context.publish(&GRANT_REQUEST)?,
+            positions: None,
+            robots: None,
             validator: MessageValidator::default(),
             silent: 0,
             goal: None,
@@ -154,7 +159,8 @@ impl ZoneClient {
         }
     }
 
-    /// Takes in what zones say. True if there are grants for an earlier goal among them, whose blocks may lead elsewhere.
+    /// Takes in what zones say. True if there are grants for an earlier goal among them, whose blocks may lead
+    /// elsewhere.
     pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) -> bool {
         let ZoneClient { passage: Some(passage), territories, grants, validator, in_the_way, latency, aimed, .. } =
             self

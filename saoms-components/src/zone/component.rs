@@ -298,7 +298,7 @@ impl Zone {
     fn plan(&self, state: &mut State) -> Planned {
         let State { ledger, maneuvers, ground } = state;
         let lost = ledger.members().values().filter(|member| member.is_obstacle());
-        let obstacles: Vec<Block> = lost.flat_map(|member| member.steps.iter().map(|step| step.block)).collect();
+        let obstacles: Vec<Block> = lost.flat_map(Member::blocks).collect();
         ground.begin_round(obstacles, ledger.members().values().map(|member| member.request.charger));
         let planned = plan::plan(ledger, maneuvers, ground, self.properties.ahead as usize);
         ledger.end_round();

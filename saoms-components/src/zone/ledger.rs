@@ -50,6 +50,13 @@ impl Member {
         self.request.standing == Standing::Lost || self.silent > SILENT
     }
 
+    /// The blocks that it keeps as an obstacle, also those of other zones.
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = Block> {
+        let is_lost = self.request.standing == Standing::Lost;
+        let said = [self.request.block, self.request.end].into_iter().filter(move |_| is_lost);
+        self.steps.iter().map(|step| step.block).chain(said)
+    }
+
     /// True if it wants to go somewhere else.
     pub(crate) fn wants_to_go(&self) -> bool {
         self.request.standing == Standing::MakesWay && self.request.goal != self.end()

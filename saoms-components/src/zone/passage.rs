@@ -172,12 +172,14 @@ impl Passage {
                 standing: wish.standing,
                 ahead: if is_concerned { wish.ahead } else { 0 },
             };
-            // A zone that the robot has left need not know where it is now.
+            // A zone that the robot has left need not know where it is now, unless it stays there for ever.
             let is_news = if is_concerned || is_new {
                 // The zone need not hear of another latency by itself.
                 GrantRequest { ahead: one.said.ahead, ..request.clone() } != one.said
             } else {
-                (request.goal != request.end) != (one.said.goal != one.said.end)
+                let is_lost = |request: &GrantRequest| request.standing == Standing::Lost;
+                is_lost(&request) != is_lost(&one.said)
+                    || (request.goal != request.end) != (one.said.goal != one.said.end)
                     || (&request.held, request.received) != (&one.said.held, one.said.received)
             };
             if is_news {

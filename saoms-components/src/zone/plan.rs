@@ -130,8 +130,11 @@ impl Round<'_> {
         let (end, goal) = (member.end(), member.request.goal);
         for block in self.candidates(end, goal, makes_way) {
             if !self.ledger.territory().contains(block) {
+                if makes_way {
+                    continue;
+                }
                 // The zone over there decides.
-                return if makes_way { Outcome::Refused } else { Outcome::Waits };
+                return Outcome::Waits;
             }
             let outcome = match self.ledger.holder(block) {
                 None if self.ledger.grant(robot, block) => {

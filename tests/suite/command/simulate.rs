@@ -69,6 +69,30 @@ fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
     assert_eq!(report["results"], twice["results"], "in other processes it is the same");
 }
 
+/// An airport in a storm: messages are lost, late and doubled, robots break down, masters die, a zone crashes, and
+/// robots are cut off.
+#[test]
+fn a_storm_harms_no_fleet_with_zones() {
+    let folder = empty_folder("simulate-storm");
+    let composite = root().join("composites/storm.composite");
+    let arguments = ["--seeds", "200", "--report", "json"];
+    let (code, told, progress) = simulate_file(&folder, composite.to_str().unwrap(), &arguments);
+    assert_eq!(code, Some(0), "{told}{progress}");
+    let report: Value = serde_json::from_str(&told).unwrap();
+    let faults = &report["faults"];
+    for kind in ["lose", "delay", "duplicate", "part", "crash"] {
+        assert!(faults[kind].as_u64().unwrap() >= 200, "{kind}: {faults}");
+    }
+    let mut delivered = (0.0, 0.0);
+    for one in report["results"].as_array().unwrap() {
+        let pieces = &one["measures"][0];
+        assert_eq!(pieces["name"], "pieces delivered", "{one}");
+        delivered.0 += pieces["value"].as_f64().unwrap();
+        delivered.1 += pieces["of"].as_f64().unwrap();
+    }
+    assert!(delivered.0 >= 0.99 * delivered.1 && delivered.1 >= 24.0 * 195.0, "{delivered:?}");
+}
+
 #[test]
 fn wrong_input_starts_nothing() {
     let folder = empty_folder("simulate-wrong");

@@ -99,6 +99,9 @@ impl Loop for SafePathFollower {
 
     fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         knowledge.polling.moves = true;
+        if let Some(zones) = &mut knowledge.zones {
+            zones.positions = Some(context.publish(&POSITION)?);
+        }
         if context.goes_on() {
             // They know more than this loop yet does.
             return Ok(());

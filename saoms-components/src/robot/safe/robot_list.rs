@@ -64,6 +64,13 @@ impl Loop for SafeRobotList {
     type Symptom = SafeRobotListSymptom;
     type Decision = SayRobot;
 
+    fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        if let Some(zones) = &mut knowledge.zones {
+            zones.robots = Some(context.publish(&ROBOT_LIST)?);
+        }
+        Ok(())
+    }
+
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,

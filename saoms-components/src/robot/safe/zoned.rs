@@ -5,10 +5,13 @@ use saoms_api::{Context, Failure};
 use super::leg::Urgency;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
-use crate::messages::Standing;
+use crate::messages::{IMMOVABLE, Position, Standing};
 use crate::robot::HEARD;
 use crate::robot::RobotKnowledge;
 use crate::zone::{MOST_AHEAD, Wish};
+
+/// Number of executions after which a robot repeats its state.
+const REPEAT_STATE: u64 = 50;
 
 /// Maximum number of blocks ahead that a robot needs because zones answer late.
 const MOST_BY_LATENCY: u32 = 8;
@@ -64,6 +67,27 @@ impl RobotKnowledge {
         let Some(zones) = &mut self.zones else { return Ok(()) };
         zones.stay(begun);
         zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0 })
+    }
+
+    /// Repeats where the robot is and what it does from time to time: on a network where updates get lost, others may
+    /// know an older state.
+    ///
+    /// # Errors
+    /// The messages cannot be sent.
+    pub(in crate::robot) fn repeat_state(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let is_due = (context.execution() + u64::from(self.number)).is_multiple_of(REPEAT_STATE);
+        if self.zones.is_none() || !is_due {
+            return Ok(());
+        }
+        let stands = self.standing() != Standing::MakesWay;
+        let priority = if stands { IMMOVABLE } else { self.leg.priority(self.number) };
+        let position = Position { priority, ..self.position() };
+        let robot = self.robot(!(self.variables.critical || self.shut_down));
+        let Some(zones) = &self.zones else { return Ok(()) };
+        if let Some(positions) = &zones.positions {
+            context.send(positions, position)?;
+        }
+        zones.robots.as_ref().map_or(Ok(()), |robots| context.send(robots, robot))
     }
 
     /// Releases blocks ahead that do not lead where the robot wants to go now.
