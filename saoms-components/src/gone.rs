@@ -1,10 +1,10 @@
-//! Robots that somebody took off the floor.
+//! Robots that say nothing any more and did not say so: somebody took them off the floor, or their component failed.
 
 use saoms_api::{Field, Header, Time};
 
-use crate::messages::RobotList;
+use crate::messages::{Fault, RobotList};
 
-/// The robots that are gone, as a component heard of them. One of them is back when it says that it is active after
+/// The robots that are out, as a component heard of them. One of them is back when it says that it is active after
 /// that; what it said before, and its last words, do not count any more.
 #[derive(Clone, Debug, Default, Field)]
 pub(crate) struct Gone {
@@ -15,20 +15,34 @@ pub(crate) struct Gone {
 struct GoneRobot {
     robot: u32,
     since: Time,
+    /// True if its component failed, so that it stands on its block.
+    failed: bool,
 }
 
 impl Gone {
-    /// Notes that a robot is gone.
-    pub(crate) fn note(&mut self, robot: u32, header: Header) {
-        self.robots.retain(|known| known.robot != robot);
-        self.robots.push(GoneRobot { robot, since: header.sent });
+    /// Notes that a robot is out, by a fault that came with this header.
+    pub(crate) fn note(&mut self, fault: &Fault, header: Header) {
+        self.robots.retain(|known| known.robot != fault.robot);
+        let since = fault.since.unwrap_or(header.sent);
+        self.robots.push(GoneRobot { robot: fault.robot, since, failed: fault.is_failure() });
     }
 
+    /// True if somebody took the robot off the floor.
     pub(crate) fn contains(&self, robot: u32) -> bool {
+        self.robots.iter().any(|known| known.robot == robot && !known.failed)
+    }
+
+    /// True if the robot is off the floor, or its component failed.
+    pub(crate) fn is_out(&self, robot: u32) -> bool {
         self.robots.iter().any(|known| known.robot == robot)
     }
 
-    /// True if what a robot says of its state counts: it is not gone, or is back now.
+    /// True if a robot that is out said something before that, with this header.
+    pub(crate) fn is_over(&self, robot: u32, header: Header) -> bool {
+        self.robots.iter().any(|known| known.robot == robot && header.sent <= known.since)
+    }
+
+    /// True if what a robot says of its state counts: it is not out, or is back now.
     #[inline]
     pub(crate) fn hears(&mut self, robot: &RobotList, header: Header) -> bool {
         self.robots.is_empty() || self.comes_back(robot, header)
@@ -44,9 +58,9 @@ impl Gone {
         is_back
     }
 
-    /// The numbers of the robots.
+    /// The numbers of the robots that are off the floor.
     pub(crate) fn robots(&self) -> impl Iterator<Item = u32> {
-        self.robots.iter().map(|known| known.robot)
+        self.robots.iter().filter(|known| !known.failed).map(|known| known.robot)
     }
 }
 
@@ -65,10 +79,23 @@ mod tests {
         let says = |active| RobotList { robot: 2, active, ..RobotList::default() };
         let mut gone = Gone::default();
         assert!(gone.hears(&says(false), at(1)));
-        gone.note(2, at(5));
+        gone.note(&Fault::gone(2), at(5));
         assert!(gone.hears(&RobotList { robot: 3, ..says(true) }, at(6)));
         assert!(!gone.hears(&says(true), at(5)), "it said so before");
         assert!(!gone.hears(&says(false), at(6)), "its last words");
         assert!(gone.contains(2) && gone.hears(&says(true), at(7)) && !gone.contains(2));
+    }
+
+    #[test]
+    fn a_robot_that_failed_stands_on_its_block_and_what_it_said_before_is_over() {
+        let at = |seconds| Time::START + Duration::from_secs(seconds);
+        let header = |seconds| Header { sender: 0, sent: at(seconds), cause: Cause::default() };
+        let mut gone = Gone::default();
+        gone.note(&Fault::failure(2, at(5), true), header(7));
+        assert!(gone.is_out(2) && !gone.contains(2) && gone.robots().next().is_none());
+        assert!(gone.is_over(2, header(5)) && !gone.is_over(2, header(6)) && !gone.is_over(3, header(5)));
+        let back = RobotList { robot: 2, active: true, ..RobotList::default() };
+        assert!(gone.hears(&back, header(6)), "it started again before the others heard of its failure");
+        assert!(!gone.is_out(2));
     }
 }

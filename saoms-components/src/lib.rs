@@ -8,6 +8,7 @@
 pub mod broker;
 pub mod console;
 pub mod environment;
+mod failure;
 mod gone;
 pub mod grid;
 pub mod hardware;

@@ -7,11 +7,13 @@
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
 //! - [`InvariantsRegistration`]: what has to hold in each run, whatever is done to the fleet (`saoms simulate`),
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
-//! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`).
+//! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
+//! - [`FailureNotice`]: what a fleet is told of a component that failed and lost what it knew.
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
 mod events;
+mod failures;
 mod invariants;
 mod language;
 mod picture;
@@ -21,6 +23,7 @@ pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
+pub use failures::{FailureNotice, Outage};
 pub use invariants::{InvariantsRegistration, Measure, RunInvariants, Violation};
 pub use language::{
     Completion, CompletionKind, Explanation, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, RaisedEvent,

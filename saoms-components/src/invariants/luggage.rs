@@ -7,7 +7,7 @@ use saoms_api::host::SharedMessage;
 
 use super::tide::Tide;
 use super::{FINISHED, Finder, ONCE, TAKEN_OVER, bound};
-use crate::messages::{CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage};
+use crate::messages::{CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal};
 
 /// The pieces of luggage of a site.
 #[derive(Debug, Default)]
@@ -77,6 +77,19 @@ impl Pieces {
             }
             CriticalStage::Taken => _ = self.stranded.remove(&said.luggage),
             _ => {}
+        }
+    }
+
+    /// The world says what a robot left that is gone or has failed.
+    pub(super) fn hear_removal(&mut self, message: &SharedMessage, at: Time) {
+        let Some(Removal { robot, luggage, delivered, .. }) = message.get::<Removal>() else { return };
+        for luggage in luggage {
+            self.stranded.entry(*luggage).or_insert((*robot, at));
+        }
+        for luggage in delivered {
+            if let Some(piece) = self.all.get_mut(luggage) {
+                piece.delivered.get_or_insert(at);
+            }
         }
     }
 

@@ -144,7 +144,7 @@ impl RunInvariants for FleetInvariants {
                 self.tide.rise(at);
                 robots.hear_fault(message);
             }
-            Content::Removal => robots.hear_removal(message),
+            Content::Removal => pieces.hear_removal(message, at),
             Content::Critical => {
                 robots.hear_critical(message);
                 pieces.hear_critical(message, at);

@@ -10,8 +10,7 @@ use super::{BATTERY, Finder, MOVES, NO_DEADLOCK, NO_SWAP, ONE_IN_A_BLOCK, bound}
 use crate::grid::{Block, Map};
 use crate::hardware::Area;
 use crate::messages::{
-    Collision, CriticalSituation, CriticalStage, EventLuggage, Fault, FaultKind, LuggageStage, Position, Removal,
-    RobotList,
+    Collision, CriticalSituation, CriticalStage, EventLuggage, Fault, FaultKind, LuggageStage, Position, RobotList,
 };
 
 /// The robots of a site.
@@ -99,14 +98,9 @@ impl Robots {
     }
 
     pub(super) fn hear_fault(&mut self, message: &SharedMessage) {
-        if let Some(Fault { robot, kind }) = message.get::<Fault>() {
-            self.put_out(*robot, *kind == FaultKind::Gone);
-        }
-    }
-
-    pub(super) fn hear_removal(&mut self, message: &SharedMessage) {
-        if let Some(removal) = message.get::<Removal>() {
-            self.put_out(removal.robot, true);
+        if let Some(fault) = message.get::<Fault>() {
+            let starts_elsewhere = fault.kind == FaultKind::Gone || fault.is_failure() && fault.block.is_none();
+            self.put_out(fault.robot, starts_elsewhere);
         }
     }
 

@@ -150,6 +150,12 @@ impl Component for MasterEnvironment {
                 self.knowledge.filter.learn(area.clone().into());
             }
         }
+        // Robots that have started again since say so below.
+        for (header, event) in context.receive(&self.events).with_headers() {
+            for fault in event.faults.iter().filter(|fault| fault.is_failure()) {
+                self.note_failure(fault, header);
+            }
+        }
         let mut started = Vec::new();
         for (header, robot) in context.receive(&self.robots).with_headers() {
             if self.knowledge.accepts(robot, header, context) && self.knowledge.hear_robot(robot, header) {
@@ -182,17 +188,7 @@ impl Component for MasterEnvironment {
                 self.knowledge.open.hear_removal(removal);
             }
         }
-        for (robot, request) in self.knowledge.open.open_again(self.knowledge.filter.area().is_some()) {
-            let (luggage, from) = (request.luggage, request.from);
-            context.effect(record!(
-                opens_luggage_again: "luggage {luggage} waits again at {from}: robot {robot} is gone",
-                luggage,
-                from,
-                robot
-            ));
-            info!(context, "luggage {luggage} waits again at {from}: robot {robot} is gone");
-            self.request(request, context)?;
-        }
+        self.open_again(context)?;
         for request in self.knowledge.open.visit_again() {
             let visit = request.luggage - FIRST_VISIT;
             info!(context, "visit {visit} waits again: its robot left it");
@@ -274,7 +270,7 @@ impl MasterEnvironment {
         for exceptional in &event.exceptional {
             context.send(&self.exceptional, exceptional.clone())?;
         }
-        for fault in &event.faults {
+        for fault in event.faults.iter().filter(|fault| !fault.is_failure()) {
             if let Err(problem) =
                 fault.validate(header.sender, &mut self.knowledge.validator, self.knowledge.filter.area())
             {
@@ -288,12 +284,51 @@ impl MasterEnvironment {
                     }
                     FaultKind::Gone => {
                         let header = Header { sent: context.due(), ..header };
-                        self.knowledge.take_away(fault.robot, header);
+                        self.knowledge.take_away(fault, header);
                     }
+                    FaultKind::Failed | FaultKind::Restarting => {}
                 }
                 context.send(&self.faults, fault.clone())?;
             }
         }
+        Ok(())
+    }
+
+    /// The component of a robot failed. One that nobody has heard of has nothing to take over.
+    fn note_failure(&mut self, fault: &Fault, header: Header) {
+        let MasterEnvironmentKnowledge { validator, filter, .. } = &mut self.knowledge;
+        if fault.validate(header.sender, validator, filter.area()).is_ok() {
+            self.knowledge.take_away(fault, header);
+        }
+    }
+
+    /// Tells the robots of those that failed, and requests the luggage of robots that are out again.
+    fn open_again(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let has_world = self.knowledge.filter.area().is_some();
+        for fault in self.knowledge.open.untold(has_world) {
+            context.send(&self.faults, fault)?;
+        }
+        for (robot, request) in self.knowledge.open.open_again(has_world) {
+            let (luggage, from) = (request.luggage, request.from);
+            let record = match self.knowledge.open.is_off_floor(robot) {
+                true => record!(
+                    opens_luggage_again: "luggage {luggage} waits again at {from}: robot {robot} is gone",
+                    luggage,
+                    from,
+                    robot
+                ),
+                false => record!(
+                    opens_luggage_of_failed: "luggage {luggage} waits again at {from}: robot {robot} has failed",
+                    luggage,
+                    from,
+                    robot
+                ),
+            };
+            info!(context, "{record}");
+            context.effect(record);
+            self.request(request, context)?;
+        }
+        self.knowledge.open.forget_failures();
         Ok(())
     }
 
@@ -372,7 +407,8 @@ impl MasterEnvironment {
         for gone in gone {
             context.send(&self.faults, Fault::gone(gone))?;
         }
-        Ok(())
+        let failures: Vec<Fault> = self.knowledge.open.failures(robot).cloned().collect();
+        failures.into_iter().try_for_each(|fault| context.send(&self.faults, fault))
     }
 
     /// Handles a message about luggage from a robot, or from another component on the robots' topic.

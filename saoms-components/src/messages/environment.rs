@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use saoms_api::{Field, Message, Topic};
+use saoms_api::{Field, Message, Time, Topic};
 
 use crate::grid::{Block, Map};
 use crate::validation::{MessageValidator, Problem, Validate, of_robot};
@@ -203,6 +203,12 @@ pub enum FaultKind {
     Breakdown,
     /// Somebody took the robot off the floor. It holds no block any more, and says nothing until it is started again.
     Gone,
+    /// The component of the robot has failed for good. The robot stays where it is, and says nothing until it is
+    /// started again.
+    Failed,
+    /// The component of the robot has failed, and starts again without what it knew. Until it says so it is as one that
+    /// has failed for good.
+    Restarting,
 }
 
 /// A fault of a robot.
@@ -212,12 +218,16 @@ pub struct Fault {
     pub robot: u32,
     /// Kind of the fault.
     pub kind: FaultKind,
+    /// Time of a failure.
+    pub since: Option<Time>,
+    /// Block where a robot that failed is, where a world knows it.
+    pub block: Option<Block>,
 }
 
 impl Fault {
     /// The breakdown of a robot.
     pub const fn breakdown(robot: u32) -> Fault {
-        Fault { robot, kind: FaultKind::Breakdown }
+        Fault { robot, kind: FaultKind::Breakdown, since: None, block: None }
     }
 
     /// True if this is the breakdown of that robot.
@@ -227,7 +237,23 @@ impl Fault {
 
     /// The robot is off the floor.
     pub const fn gone(robot: u32) -> Fault {
-        Fault { robot, kind: FaultKind::Gone }
+        Fault { robot, kind: FaultKind::Gone, since: None, block: None }
+    }
+
+    /// The component of a robot has failed, and starts again without what it knew, or not at all.
+    pub const fn failure(robot: u32, since: Time, restarts: bool) -> Fault {
+        let kind = if restarts { FaultKind::Restarting } else { FaultKind::Failed };
+        Fault { robot, kind, since: Some(since), block: None }
+    }
+
+    /// True if the robot does nothing any more without having said so: it is off the floor, or its component failed.
+    pub fn silences(&self) -> bool {
+        self.kind != FaultKind::Breakdown
+    }
+
+    /// True if its component failed.
+    pub fn is_failure(&self) -> bool {
+        matches!(self.kind, FaultKind::Failed | FaultKind::Restarting)
     }
 }
 
@@ -236,6 +262,8 @@ impl fmt::Display for Fault {
         match self.kind {
             FaultKind::Breakdown => write!(formatter, "robot {} breaks down", self.robot),
             FaultKind::Gone => write!(formatter, "robot {} is gone", self.robot),
+            FaultKind::Failed => write!(formatter, "robot {} has failed", self.robot),
+            FaultKind::Restarting => write!(formatter, "robot {} has failed and starts again", self.robot),
         }
     }
 }
@@ -252,19 +280,19 @@ impl Validate for Fault {
     }
 }
 
-/// What robots that are gone left behind.
+/// What robots that are gone, or whose component failed, left behind.
 ///
 /// Published by the world; read by the master of the environment and the environment.
 pub const REMOVAL: Topic<Removal> = Topic::event("REMOVALTOPIC").optional();
 
-/// A robot that is off the floor, and where its luggage lies now.
+/// A robot that is off the floor or has failed, and where its luggage is now.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct Removal {
     /// Number of the robot.
     pub robot: u32,
     /// Block where it was.
     pub block: Block,
-    /// Numbers of the pieces that it carried, which lie on that block.
+    /// Numbers of the pieces that it carried, which are on that block.
     pub luggage: Vec<u32>,
     /// Numbers of those that it carried and for which that block is the destination.
     pub delivered: Vec<u32>,

@@ -104,6 +104,8 @@ pub struct RobotKnowledge {
     /// True if it was sent to charge, so that it needs no substitute.
     #[entry(quiet)]
     pub relieved: bool,
+    /// True if it has to announce itself again: the others may take it for a robot that has failed.
+    pub(super) says_again: bool,
     /// True if somebody took it off the floor.
     pub(super) gone: bool,
     /// Time of its first execution: a robot that was said to be gone before that is back.
@@ -198,6 +200,7 @@ impl RobotKnowledge {
             shut_down: false,
             stands_in_for: None,
             relieved: false,
+            says_again: false,
             gone: false,
             began: None,
             validator: MessageValidator::default(),
@@ -246,7 +249,7 @@ impl RobotKnowledge {
             return Some("its release after a stop".to_owned());
         }
         if self.hardware.is_absent() {
-            return Some("its world, which is not started".to_owned());
+            return Some("its world, which does not run".to_owned());
         }
         let Variables { transporter, healer, critical, .. } = self.variables;
         let has_work = self.job.is_some() || self.untold.is_some() || transporter || healer || critical;

@@ -5,7 +5,7 @@ use saoms_api::{Context, Failure, Header, Region, Subscription, record, warn};
 use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
 use crate::grid::Block;
 use crate::messages::{
-    ASSIGNMENT, Assignment, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position,
+    ASSIGNMENT, Assignment, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, IMMOVABLE, LuggageStage, POSITION, Position,
     ROBOT_LIST, RobotList, VISIT, Visit, is_visit,
 };
 use crate::validation::Validate;
@@ -105,17 +105,19 @@ impl RobotKnowledge {
         topics.hear_around(self, context)
     }
 
-    /// Hears which robots somebody took off the floor. `None` if this one is, and has nothing to do any more; else the
-    /// others.
+    /// Hears which robots are out without having said so: somebody took them off the floor, or their component failed.
+    /// `None` if this one is off the floor, and has nothing to do any more; else the others that are.
     pub(super) fn hear_gone(&mut self, topics: &Topics, context: &mut Context<'_>) -> Option<Vec<u32>> {
         let began = *self.began.get_or_insert(context.due());
         let mut others = Vec::new();
         for (header, fault) in context.receive(&topics.faults).with_headers() {
-            if fault.kind != FaultKind::Gone || !self.accepts(fault, header, context) {
+            if !fault.silences() || !self.accepts(fault, header, context) {
                 continue;
             }
-            if fault.robot != self.number {
-                self.lists.gone.note(fault.robot, header);
+            if fault.is_failure() {
+                self.hear_failure(fault, header);
+            } else if fault.robot != self.number {
+                self.lists.gone.note(fault, header);
                 others.push(fault.robot);
             } else if header.sent > began {
                 context.because(header.cause);
@@ -123,6 +125,22 @@ impl RobotKnowledge {
             }
         }
         Some(others)
+    }
+
+    /// The component of a robot failed: the robot stands where it is, and what it had in mind does not count any more.
+    fn hear_failure(&mut self, fault: &Fault, header: Header) {
+        let robot = fault.robot;
+        if robot == self.number {
+            // It has begun anew, and the others do not know yet.
+            (self.says_again, self.lists.is_doubted) = (true, true);
+            return;
+        }
+        self.lists.gone.note(fault, header);
+        self.lists.end_of(robot);
+        let stands = self.lists.peers.stop(robot, fault.block, fault.since.unwrap_or(header.sent));
+        if stands && self.policy == Policy::Safe && !self.lists.lost.contains(&robot) {
+            self.lists.lost.push(robot);
+        }
     }
 
     /// Forgets robots that are off the floor, after all that they said before has been heard.
@@ -159,7 +177,7 @@ impl RobotKnowledge {
         let sound = heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));
         let Lists { peers, gone, .. } = lists;
         let sound = sound.filter(|(_, position)| !gone.contains(position.robot));
-        peers.hear(sound.map(|(_, position)| position));
+        peers.hear(sound.map(|(header, position)| (position, header.sent)));
     }
 
     /// Handles the states of other robots.
@@ -198,7 +216,8 @@ impl RobotKnowledge {
         lists.lost.retain(|robot| {
             let peer = lists.peers.get(*robot).filter(|peer| peer.priority == IMMOVABLE);
             if let Some(peer) = peer {
-                routes.learn_obstacle(*robot, peer.block);
+                // One that failed on its way may be on any of these.
+                routes.learn_obstacle(*robot, [peer.block, peer.next, peer.wanted]);
             }
             peer.is_none()
         });
@@ -227,7 +246,9 @@ impl RobotKnowledge {
         for (header, event) in context.receive(&luggage).with_headers() {
             // The manual's rules know no blocks to visit.
             let is_for_policy = !is_visit(event.luggage) || self.policy == Policy::Safe;
-            if self.accepts(event, header, context) && is_for_policy {
+            // What a robot was interested in before it failed.
+            let is_over = event.stage == LuggageStage::Interest && self.lists.gone.is_over(event.robot, header);
+            if self.accepts(event, header, context) && is_for_policy && !is_over {
                 self.lists.requests.hear(event, header);
             }
         }

@@ -10,7 +10,7 @@ use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
 #[derive(Debug, Default)]
 pub struct Routes {
     area: Option<Area>,
-    /// Robots that do not move any more, and their blocks.
+    /// Robots that do not move any more, and their blocks: several for one that may be on any of them.
     obstacles: Vec<(u32, Block)>,
     /// Cached searches: [`WAYS`] of them, once one was needed.
     ways: Vec<Way>,
@@ -155,16 +155,26 @@ impl Routes {
         self.area.as_ref().map(|area| area.charge_block)
     }
 
-    /// Adds a robot that does not move any more as an obstacle.
-    pub fn learn_obstacle(&mut self, robot: u32, block: Block) {
-        if self.obstacles.contains(&(robot, block)) {
+    /// Adds a robot that does not move any more as an obstacle: it is on one of these blocks, which may be the same.
+    pub fn learn_obstacle(&mut self, robot: u32, blocks: [Block; 3]) {
+        let mut blocks = blocks.to_vec();
+        blocks.dedup();
+        if self
+            .obstacles
+            .iter()
+            .filter(|(known, _)| *known == robot)
+            .map(|(_, block)| *block)
+            .eq(blocks.iter().copied())
+        {
             return;
         }
         self.forget_obstacle(robot);
-        self.obstacles.push((robot, block));
+        self.obstacles.extend(blocks.iter().map(|block| (robot, *block)));
         if let Some(area) = &mut self.area {
             area.empty.get_or_insert_with(|| area.map.clone());
-            area.map.set_blocked(block);
+            for block in blocks {
+                area.map.set_blocked(block);
+            }
         }
         self.forget_searches();
     }

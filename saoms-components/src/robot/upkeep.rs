@@ -91,6 +91,7 @@ impl RobotKnowledge {
         if self.routes.charge_block().is_some_and(|known| known != self.charge_block) {
             self.use_charger(self.charge_block);
         }
+        self.lists.is_doubted = false;
         // A broken robot stops its hardware for good, and says a last time what it has to say in the next execution.
         self.shut_down |= was_critical;
         if self.variables.critical { self.stop_for_good(context) } else { Ok(()) }

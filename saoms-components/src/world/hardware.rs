@@ -6,7 +6,7 @@ use super::World;
 use super::luggage::HandlingOutcome;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
-use crate::messages::Collision;
+use crate::messages::{Collision, Removal};
 
 impl World {
     fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
@@ -73,23 +73,27 @@ impl World {
         Ok(Progress::Done)
     }
 
-    /// The robot has begun anew: what it carries it does not know of.
-    fn unload_if_forgotten(&mut self, robot: u32) -> Result<(), Failure> {
+    /// The robot has begun anew: what it carries it does not know of, so that it lies where it is.
+    fn unload_if_forgotten(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
         if self.referee.has_forgotten(robot) {
-            self.stock.unload(robot, self.referee.block(robot)?);
+            let block = self.referee.block(robot)?;
+            let (delivered, luggage) = self.put_down(context, robot, block);
+            if !delivered.is_empty() || !luggage.is_empty() {
+                context.send(&self.removals, Removal { robot, block, luggage, delivered })?;
+            }
         }
         Ok(())
     }
 }
 
 impl Hardware for World {
-    fn enter(&mut self, _context: &mut Context<'_>, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
+    fn enter(&mut self, context: &mut Context<'_>, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
         self.memory.forget();
         let was_retired = self.referee.is_retired(robot);
-        let block = self.referee.enter(robot, name, block)?;
-        if was_retired {
+        let block = self.referee.enter(robot, name, block, context.now())?;
+        if was_retired && self.referee.has_forgotten(robot) {
             // Its luggage lies where other robots look for it.
-            self.unload_if_forgotten(robot)?;
+            self.stock.unload(robot, block);
         }
         Ok(block)
     }
@@ -103,7 +107,7 @@ impl Hardware for World {
         if self.referee.is_running(robot)? {
             return Err(Failure::new(format!("robot {robot} begins an action before its previous action has ended")));
         }
-        self.unload_if_forgotten(robot)?;
+        self.unload_if_forgotten(context, robot)?;
         if self.referee.is_retired(robot) {
             return Ok(Progress::Failed);
         }
@@ -140,15 +144,15 @@ impl Hardware for World {
         Ok(progress)
     }
 
-    fn cancel(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+    fn cancel(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
         self.memory.forget();
-        self.unload_if_forgotten(robot)?;
+        self.unload_if_forgotten(context, robot)?;
         self.referee.cancel(robot)
     }
 
-    fn retire(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
+    fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
         self.memory.forget();
-        self.unload_if_forgotten(robot)?;
+        self.unload_if_forgotten(context, robot)?;
         self.referee.retire(robot)
     }
 }

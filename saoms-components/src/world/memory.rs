@@ -42,6 +42,7 @@ struct BodyMemory {
     handled: Option<Handled>,
     retired: bool,
     gone: bool,
+    entered: Time,
     entered_again: bool,
 }
 
@@ -83,6 +84,7 @@ impl BodyMemory {
             handled: body.handled.map(|(action, progress)| Handled { action, progress }),
             retired: body.retired,
             gone: body.gone,
+            entered: body.entered,
             entered_again: body.entered_again,
         }
     }
@@ -96,6 +98,7 @@ impl BodyMemory {
             handled: self.handled.map(|handled| (handled.action, handled.progress)),
             retired: self.retired,
             gone: self.gone,
+            entered: self.entered,
             entered_again: self.entered_again,
         };
         (self.robot, body)

@@ -12,7 +12,7 @@ mod tests;
 use std::collections::BTreeSet;
 
 use saoms_api::{
-    Cause, Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Work, record, warn,
+    Cause, Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Time, Work, record, warn,
 };
 
 use crate::grid::Block;
@@ -34,9 +34,9 @@ use referee::Referee;
 ///
 /// Robots whose reference `world` leads here drive simulated hardware: their actions take the time that the properties
 /// set, and succeed only where they are possible. The world counts deliveries and collisions. A robot that breaks down
-/// stays where it is, with its luggage, which another robot beside it can take over. One that somebody took off the
-/// floor leaves its luggage on its block, which is free then. The run ends when all luggage
-/// is delivered or given up; it is incomplete if any was given up.
+/// stays where it is, with its luggage, which another robot beside it can take over; so does one whose component has
+/// failed. One that somebody took off the floor leaves its luggage on its block, which is free then. The run ends when
+/// all luggage is delivered or given up; it is incomplete if any was given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.World",
@@ -119,6 +119,11 @@ impl Component for World {
                     FaultKind::Gone => {
                         context.because(header.cause);
                         self.take_away(context, fault)?;
+                        context.because(Cause::default());
+                    }
+                    FaultKind::Failed | FaultKind::Restarting => {
+                        context.because(header.cause);
+                        self.stop_failed(context, fault, fault.since.unwrap_or(header.sent))?;
                         context.because(Cause::default());
                     }
                 }
@@ -224,20 +229,49 @@ impl World {
         let (block, delivered, luggage) = match self.referee.remove(robot) {
             Ok(None) => return Ok(()),
             Ok(Some(block)) => {
-                let delivered = self.stock.carried_to(robot, block);
-                for luggage in &delivered {
-                    if let Ok(HandlingOutcome::Delivered { given_up }) = self.stock.deposit(*luggage, robot, block) {
-                        self.count_delivery(context, given_up);
-                    }
-                }
+                let (delivered, luggage) = self.put_down(context, robot, block);
                 context.count("robots.gone", 1);
                 context.effect(record!(frees_block: "robot {robot} is gone: {block} is free", robot, block));
                 warn!(context, "{fault}: {block} is free");
-                (block, delivered, self.stock.unload(robot, block))
+                (block, delivered, luggage)
             }
             Err(_) => (Block::default(), Vec::new(), Vec::new()),
         };
         context.send(&self.removals, Removal { robot, block, luggage, delivered })
+    }
+
+    /// A robot lets go of what it carries: what is at its destination there is delivered. Returns the numbers of these
+    /// pieces, and those of the others.
+    fn put_down(&mut self, context: &mut Context<'_>, robot: u32, block: Block) -> (Vec<u32>, Vec<u32>) {
+        let delivered = self.stock.carried_to(robot, block);
+        for luggage in &delivered {
+            if let Ok(HandlingOutcome::Delivered { given_up }) = self.stock.deposit(*luggage, robot, block) {
+                self.count_delivery(context, given_up);
+            }
+        }
+        (delivered, self.stock.unload(robot, block))
+    }
+
+    /// The component of a robot failed, and lost what it knew: the robot is stopped where it is, and others can take
+    /// over what it carries.
+    fn stop_failed(&mut self, context: &mut Context<'_>, fault: &Fault, since: Time) -> Result<(), Failure> {
+        let robot = fault.robot;
+        let removal = match self.referee.fail(robot, since) {
+            Ok(is_out) => {
+                let block = self.referee.block(robot)?;
+                let (delivered, luggage) = match is_out || self.referee.has_forgotten(robot) {
+                    true => self.put_down(context, robot, block),
+                    false => (Vec::new(), Vec::new()),
+                };
+                context
+                    .effect(record!(stops_failed_robot: "robot {robot} has failed: it stays at {block}", robot, block));
+                warn!(context, "{fault}: it stays at {block}");
+                Removal { robot, block, luggage, delivered }
+            }
+            // It is none of this world.
+            Err(_) => Removal { robot, ..Removal::default() },
+        };
+        context.send(&self.removals, removal)
     }
 
     fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {

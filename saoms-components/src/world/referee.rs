@@ -35,6 +35,8 @@ pub(super) struct Body {
     pub(super) retired: bool,
     /// True if somebody took it off the floor: it holds no block.
     pub(super) gone: bool,
+    /// Time at which it registered.
+    pub(super) entered: Time,
     /// The last action of its gripper that ended, and how.
     pub(super) handled: Option<(Action, Progress)>,
     /// True if it registered again, and has not shown yet whether it knows what it carries.
@@ -81,7 +83,7 @@ impl Referee {
     }
 
     /// Registers a robot at a block. A robot that was registered before, as before a restart, stays where it was.
-    pub(super) fn enter(&mut self, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
+    pub(super) fn enter(&mut self, robot: u32, name: String, block: Block, now: Time) -> Result<Block, Failure> {
         if let Some(body) = self.bodies.get(&robot) {
             if body.name != name {
                 return Err(Failure::new(format!(
@@ -92,7 +94,7 @@ impl Referee {
             if !body.gone {
                 self.cancel(robot)?;
                 if let Some(body) = self.bodies.get_mut(&robot) {
-                    (body.retired, body.entered_again) = (false, true);
+                    (body.retired, body.entered_again, body.entered) = (false, true, now);
                 }
                 return self.block(robot);
             }
@@ -123,6 +125,7 @@ impl Referee {
                 handling: None,
                 retired: false,
                 gone: false,
+                entered: now,
                 handled: None,
                 entered_again: false,
             },
@@ -261,6 +264,16 @@ impl Referee {
         let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
         body.retired = true;
         Ok(body.block)
+    }
+
+    /// Takes a robot out of service whose component failed at a time: what was over by then is done, and it stays where
+    /// it is. False if it has registered again since.
+    pub(super) fn fail(&mut self, robot: u32, since: Time) -> Result<bool, Failure> {
+        if self.body(robot)?.entered > since {
+            return Ok(false);
+        }
+        self.settle(since);
+        self.retire(robot).map(|_| true)
     }
 
     /// Takes a robot off the floor until it starts again: it holds no block any more. Returns the block where it was;

@@ -20,7 +20,7 @@ fn name(robot: u32) -> String {
 fn referee(starts: &[Block]) -> Referee {
     let mut referee = Referee::new(Map::read("....\n....\n...@").unwrap());
     for (robot, start) in (1..).zip(starts) {
-        assert_eq!(referee.enter(robot, name(robot), *start), Ok(*start));
+        assert_eq!(referee.enter(robot, name(robot), *start, Time::START), Ok(*start));
     }
     referee
 }
@@ -41,7 +41,7 @@ fn robots_start_on_free_blocks_of_the_map() {
         (block(3, 2), "which is blocked on the map"),
         (block(0, 0), "where robot 1 is already"),
     ] {
-        let failure = referee.enter(2, name(2), start).unwrap_err();
+        let failure = referee.enter(2, name(2), start, Time::START).unwrap_err();
         let expected = format!("robot 2 starts at {start}, {reason}: give it another charge block");
         assert_eq!(failure.message(), expected);
     }
@@ -54,9 +54,13 @@ fn a_robot_that_starts_again_is_where_it_was() {
     hop(&mut referee, 1, block(1, 0));
     let later = Time::START + Duration::from_secs(1);
     referee.begin_move(1, block(2, 0), later).unwrap().unwrap();
-    assert_eq!(referee.enter(1, name(1), block(0, 0)), Ok(block(1, 0)));
+    assert_eq!(referee.enter(1, name(1), block(0, 0), Time::START), Ok(block(1, 0)));
     assert_eq!(referee.is_running(1), Ok(false));
-    assert_eq!(referee.enter(2, name(2), block(2, 0)), Ok(block(2, 0)), "what the stopped robot held is free");
+    assert_eq!(
+        referee.enter(2, name(2), block(2, 0), Time::START),
+        Ok(block(2, 0)),
+        "what the stopped robot held is free"
+    );
 }
 
 #[test]
@@ -146,7 +150,7 @@ fn a_robot_that_is_out_of_order_stays_until_it_starts_again() {
     referee.retire(1).unwrap();
     referee.settle(later);
     assert!(referee.is_retired(1) && referee.is_retired_at(block(0, 0)) && !referee.is_retired_at(block(1, 0)));
-    assert_eq!(referee.enter(1, name(1), block(0, 0)), Ok(block(0, 0)));
+    assert_eq!(referee.enter(1, name(1), block(0, 0), Time::START), Ok(block(0, 0)));
     assert!(!referee.is_retired(1));
 }
 
@@ -165,9 +169,13 @@ fn luggage_that_the_world_has_yet_to_hear_of_is_waited_for() {
 #[test]
 fn a_number_belongs_to_one_robot() {
     let mut referee = Referee::new(Map::read("...").unwrap());
-    assert_eq!(referee.enter(7, "A7".to_owned(), block(0, 0)), Ok(block(0, 0)));
-    assert_eq!(referee.enter(7, "A7".to_owned(), block(0, 0)), Ok(block(0, 0)), "a restarted robot is still there");
-    let failure = referee.enter(7, "B7".to_owned(), block(1, 0)).unwrap_err();
+    assert_eq!(referee.enter(7, "A7".to_owned(), block(0, 0), Time::START), Ok(block(0, 0)));
+    assert_eq!(
+        referee.enter(7, "A7".to_owned(), block(0, 0), Time::START),
+        Ok(block(0, 0)),
+        "a restarted robot is still there"
+    );
+    let failure = referee.enter(7, "B7".to_owned(), block(1, 0), Time::START).unwrap_err();
     assert_eq!(failure.message(), "robots `A7` and `B7` both have the number 7: give one of them another `number`");
 }
 

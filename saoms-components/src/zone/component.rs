@@ -2,7 +2,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use saoms_api::{
     CallError, Cause, Class, Component, Context, Failure, Header, KnownPublisher, Publisher, ReportValue, Subscription,
-    record, warn,
+    Time, record, warn,
 };
 
 use super::deadlock::deadlocks;
@@ -14,7 +14,7 @@ use super::properties::ZoneProperties;
 use super::{memory, plan};
 use crate::grid::{Block, Map};
 use crate::hardware::HardwareReference;
-use crate::messages::{FAULT, Fault, FaultKind, GRANT, GRANT_REQUEST, Grant, GrantRequest, TERRITORY, Territory};
+use crate::messages::{FAULT, Fault, GRANT, GRANT_REQUEST, Grant, GrantRequest, TERRITORY, Territory};
 use crate::validation::MessageValidator;
 
 /// Number of executions after which the zone repeats what was not confirmed.
@@ -42,6 +42,8 @@ pub struct Zone {
     heard: BTreeSet<u32>,
     /// Robots that somebody took off the floor, until the zone grants.
     gone: BTreeSet<u32>,
+    /// When each robot spoke last.
+    spoke: BTreeMap<u32, Time>,
     /// True if the zone grants: all robots have said where they are.
     open: bool,
     /// Robots that the alerts about deadlocks are about.
@@ -80,6 +82,7 @@ impl Component for Zone {
             validator: MessageValidator::default(),
             heard: BTreeSet::new(),
             gone: BTreeSet::new(),
+            spoke: BTreeMap::new(),
             open: false,
             deadlocked: BTreeSet::new(),
             unconfirmed: BTreeMap::new(),
@@ -209,6 +212,8 @@ impl Zone {
             if !self.open {
                 self.heard.insert(header.sender);
             }
+            let spoke = self.spoke.entry(request.robot).or_default();
+            *spoke = header.sent.max(*spoke);
             let heard = ledger.hear(request);
             if let Heard::Conflict { block, other } = heard {
                 let robot = request.robot;
@@ -221,10 +226,21 @@ impl Zone {
         changed
     }
 
-    /// Frees the blocks of robots that somebody took off the floor.
+    /// Frees the blocks of robots that somebody took off the floor. Those whose component failed keep the block where a
+    /// world stopped them, or all where that is not known.
     fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> bool {
         let mut changed = false;
-        for fault in context.receive(&self.faults).filter(|fault| fault.kind == FaultKind::Gone) {
+        for fault in context.receive(&self.faults).filter(|fault| fault.silences()) {
+            if fault.is_failure() {
+                // One that has begun anew since said what it holds.
+                let is_over = |spoke: &Time| fault.since.is_none_or(|since| *spoke > since);
+                if !self.spoke.get(&fault.robot).is_some_and(is_over) {
+                    let at = fault.block.filter(|_| self.spoke.contains_key(&fault.robot));
+                    state.ledger.stop(fault.robot, at);
+                    changed = true;
+                }
+                continue;
+            }
             state.ledger.forget(fault.robot);
             if !self.open {
                 self.gone.insert(fault.robot);

@@ -110,6 +110,19 @@ impl Ledger {
         self.members.get(&robot)
     }
 
+    /// The component of a robot failed: it cannot move any more, until it says something new. If it is known on which
+    /// of its blocks it was stopped, the others are free: nobody is left to enter them.
+    pub(crate) fn stop(&mut self, robot: u32, at: Option<Block>) {
+        let Some(member) = self.members.get_mut(&robot) else { return };
+        member.request.standing = Standing::Lost;
+        let Some(at) = at.filter(|at| member.steps.iter().any(|step| step.block == *at)) else { return };
+        let (kept, freed): (Vec<Step>, Vec<Step>) = member.steps.iter().partition(|step| step.block == at);
+        member.steps = kept;
+        for step in &freed {
+            self.free(step.block, robot);
+        }
+    }
+
     pub(crate) fn member_mut(&mut self, robot: u32) -> Option<&mut Member> {
         self.members.get_mut(&robot)
     }

@@ -389,7 +389,7 @@ impl Engine {
         }
     }
 
-    fn deliver_injection(
+    pub(super) fn deliver_injection(
         &mut self,
         time: u64,
         cause: Cause,

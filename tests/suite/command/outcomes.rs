@@ -126,7 +126,7 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
             &[
                 "`Environment` and 1 more wait for a robot to carry luggage 1",
                 "`World` is not started",
-                "`Robot7` waits for its world, which is not started",
+                "`Robot7` waits for its world, which does not run",
             ],
         ),
         (

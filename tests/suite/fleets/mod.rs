@@ -6,6 +6,7 @@ mod composites;
 mod endings;
 mod environment;
 mod expand;
+mod failures;
 mod goes_on;
 mod gone;
 mod invariants;

@@ -10,7 +10,7 @@ use super::matching::Candidate;
 use crate::grid::Block;
 use crate::master::event_filter::EventFilter;
 use crate::master::open_luggage::{OpenLuggage, WaitingPiece};
-use crate::messages::{Assignment, EventLuggage, LuggageStage, Position, RobotList};
+use crate::messages::{Assignment, EventLuggage, Fault, LuggageStage, Position, RobotList};
 use crate::robot::{HEARD, Job};
 use crate::validation::{MessageValidator, Validate};
 
@@ -89,7 +89,7 @@ impl MasterEnvironmentKnowledge {
     /// Handles the state of a robot; true if it was not active before.
     pub(in crate::master) fn hear_robot(&mut self, robot: &RobotList, header: Header) -> bool {
         let is_new = self.open.hear_robot(robot, header);
-        if !self.open.is_gone(robot.robot) {
+        if !self.open.is_out(robot.robot) {
             self.crew.hear_robot(robot);
         }
         is_new
@@ -181,9 +181,9 @@ impl MasterEnvironmentKnowledge {
         }
     }
 
-    /// A robot is off the floor.
-    pub(in crate::master) fn take_away(&mut self, robot: u32, header: Header) {
-        self.open.take_away(robot, header);
-        self.crew.remove(robot);
+    /// A robot is off the floor, or its component failed.
+    pub(in crate::master) fn take_away(&mut self, fault: &Fault, header: Header) {
+        self.open.take_away(fault, header);
+        self.crew.remove(fault.robot);
     }
 }

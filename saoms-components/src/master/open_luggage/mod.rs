@@ -1,3 +1,5 @@
+mod memory;
+mod outages;
 #[cfg(test)]
 mod tests;
 
@@ -8,8 +10,13 @@ use saoms_api::{Field, Header, ReportValue, Time};
 
 use crate::gone::Gone;
 use crate::grid::Block;
-use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, RobotList, Visit};
+use crate::messages::{
+    CriticalSituation, CriticalStage, EventLuggage, FaultKind, LuggageStage, Removal, RobotList, Visit,
+};
 use crate::robot::Job;
+
+pub(super) use memory::OpenMemory;
+use outages::Failed;
 
 /// Open luggage, and the robots that could bring it.
 #[derive(Debug, Default)]
@@ -23,9 +30,11 @@ pub struct OpenLuggage {
     breaking: BTreeMap<u32, Time>,
     /// Active robots that are broken.
     broken: BTreeSet<u32>,
-    /// Robots that are off the floor.
+    /// Robots that are off the floor, or whose component failed.
     gone: Gone,
-    /// What the world says that robots left when they were taken off the floor, by robot.
+    /// Robots whose component failed, until they are back.
+    failed: BTreeMap<u32, Failed>,
+    /// What the world says that robots left when they were taken off the floor or failed, by robot.
     left: BTreeMap<u32, Removal>,
     /// Visits that a robot left, which are not requested again yet.
     left_visits: Vec<u32>,
@@ -47,6 +56,8 @@ struct Piece {
     waits: bool,
     /// The robot that has taken it, unless that one asked for help with it.
     taken: Option<u32>,
+    /// The robot that had taken it, and is out since, until it is known where the piece is.
+    left_by: Option<u32>,
     /// Blocks to visit, in place of bringing luggage.
     stops: Vec<Block>,
     /// The only robot that may do it.
@@ -71,6 +82,13 @@ impl Piece {
         (!self.stops.is_empty()).then(|| Visit { visit: luggage, robot, stops: self.stops.clone() })
     }
 
+    /// It is at another block: whoever could not bring it from where it was may be able to now.
+    fn lies_at(&mut self, block: Block) {
+        if std::mem::replace(&mut self.from, block) != block {
+            self.refused.clear();
+        }
+    }
+
     /// True if this robot may do it and did not refuse it.
     fn is_for(&self, robot: u32) -> bool {
         self.only.is_none_or(|only| only == robot) && !self.refused.contains(&robot)
@@ -86,46 +104,6 @@ pub struct WaitingPiece {
     pub since: Time,
     /// Number of the only robot that may do it, if it is a visit for one alone.
     pub only: Option<u32>,
-}
-
-/// Open luggage, for a master that goes on.
-#[derive(Clone, Debug, Field)]
-pub(super) struct OpenMemory {
-    pieces: Vec<PieceMemory>,
-    helps: Vec<CriticalSituation>,
-    active: Vec<ActiveMemory>,
-    breaking: Vec<BreakingMemory>,
-    broken: Vec<u32>,
-    gone: Gone,
-    left: Vec<Removal>,
-    left_visits: Vec<u32>,
-    seen: bool,
-    changed: bool,
-}
-
-#[derive(Clone, Debug, Field)]
-struct PieceMemory {
-    luggage: u32,
-    from: Block,
-    to: Block,
-    refused: Vec<u32>,
-    waits: bool,
-    taken: Option<u32>,
-    stops: Vec<Block>,
-    only: Option<u32>,
-    since: Time,
-}
-
-#[derive(Clone, Copy, Debug, Field)]
-struct ActiveMemory {
-    robot: u32,
-    period_us: u64,
-}
-
-#[derive(Clone, Copy, Debug, Field)]
-struct BreakingMemory {
-    robot: u32,
-    until: Time,
 }
 
 /// Maximum number of pieces that a status lists.
@@ -151,68 +129,6 @@ impl OpenLuggage {
             ("gone", ReportValue::List(self.gone().map(ReportValue::from).collect())),
             ("luggage", ReportValue::List(self.pieces.iter().take(LISTED).map(piece).collect())),
         ])
-    }
-
-    /// The state for a master that goes on.
-    pub(super) fn memory(&self) -> OpenMemory {
-        let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused, waits, taken, stops, only, since, .. } = piece;
-            let (refused, stops) = (refused.iter().copied().collect(), stops.clone());
-            PieceMemory {
-                luggage: *luggage,
-                from: *from,
-                to: *to,
-                refused,
-                waits: *waits,
-                taken: *taken,
-                stops,
-                only: *only,
-                since: *since,
-            }
-        };
-        // Periods came as whole microseconds.
-        let active = |(robot, period): (&u32, &Duration)| ActiveMemory {
-            robot: *robot,
-            period_us: u64::try_from(period.as_micros()).unwrap_or(u64::MAX),
-        };
-        let breaking = self.breaking.iter().map(|(&robot, &until)| BreakingMemory { robot, until });
-        OpenMemory {
-            pieces: self.pieces.iter().map(piece).collect(),
-            helps: self.helps.values().cloned().collect(),
-            active: self.active.iter().map(active).collect(),
-            breaking: breaking.collect(),
-            broken: self.broken.iter().copied().collect(),
-            gone: self.gone.clone(),
-            left: self.left.values().cloned().collect(),
-            left_visits: self.left_visits.clone(),
-            seen: self.seen,
-            changed: self.changed,
-        }
-    }
-
-    /// The state of a master that goes on.
-    pub(super) fn of(memory: OpenMemory) -> OpenLuggage {
-        let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, refused, waits, taken, stops, only, since } = piece;
-            let refused = refused.into_iter().collect();
-            (luggage, Piece { from, to, refused, waits, taken, stops, only, since, asked: None, discussed: since })
-        };
-        let waiting = memory.pieces.iter().filter(|piece| piece.waits).map(|piece| (piece.since, piece.luggage));
-        let waiting = waiting.collect();
-        let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
-        OpenLuggage {
-            pieces: memory.pieces.into_iter().map(piece).collect(),
-            helps: memory.helps.into_iter().map(|help| (help.luggage, help)).collect(),
-            active: active.collect(),
-            breaking: memory.breaking.iter().map(|breaking| (breaking.robot, breaking.until)).collect(),
-            broken: memory.broken.into_iter().collect(),
-            gone: memory.gone,
-            left: memory.left.into_iter().map(|left| (left.robot, left)).collect(),
-            left_visits: memory.left_visits,
-            seen: memory.seen,
-            changed: memory.changed,
-            waiting,
-        }
     }
 
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block, since: Time) {
@@ -316,54 +232,9 @@ impl OpenLuggage {
         self.breaking.entry(robot).or_insert(now + period.saturating_mul(2));
     }
 
-    /// A robot is off the floor.
-    pub(super) fn take_away(&mut self, robot: u32, header: Header) {
-        self.gone.note(robot, header);
-        self.breaking.remove(&robot);
-        self.broken.remove(&robot);
-        self.changed |= self.active.remove(&robot).is_some();
-    }
-
-    /// The world says what a robot left.
-    pub(super) fn hear_removal(&mut self, removal: &Removal) {
-        self.left.insert(removal.robot, removal.clone());
-        removal.delivered.iter().for_each(|luggage| self.remove(*luggage));
-    }
-
-    /// Robots that are off the floor.
-    pub(super) fn gone(&self) -> impl Iterator<Item = u32> {
-        self.gone.robots()
-    }
-
-    /// True if a robot is off the floor.
-    pub(super) fn is_gone(&self, robot: u32) -> bool {
-        self.gone.contains(robot)
-    }
-
     /// The robots that bring luggage, with its number.
     pub(super) fn jobs(&self) -> impl Iterator<Item = (u32, u32)> {
         self.pieces.iter().filter_map(|(luggage, piece)| Some((piece.taken?, *luggage)))
-    }
-
-    /// Opens the luggage of robots that are off the floor again: what they carried lies where the world says, and all
-    /// else, or without a world all, where it was to be collected. Returns the robots with their requests.
-    pub(super) fn open_again(&mut self, has_world: bool) -> Vec<(u32, EventLuggage)> {
-        let mut again = Vec::new();
-        for robot in self.gone.robots() {
-            let left = self.left.get(&robot);
-            if has_world && left.is_none() {
-                continue;
-            }
-            for (luggage, piece) in self.pieces.iter_mut().filter(|(_, piece)| piece.taken == Some(robot)) {
-                if let Some(left) = left.filter(|left| left.luggage.contains(luggage)) {
-                    piece.from = left.block;
-                }
-                (piece.waits, piece.taken) = (true, None);
-                self.waiting.insert((piece.since, *luggage));
-                again.push((robot, piece.request(*luggage)));
-            }
-        }
-        again
     }
 
     /// Handles the state of a robot; true if it was not active before.
@@ -373,7 +244,14 @@ impl OpenLuggage {
             return false;
         }
         if robot.active && !self.active.contains_key(&robot.robot) {
-            self.left.remove(&robot.robot);
+            match self.failed.get_mut(&robot.robot) {
+                // The others have to hear that what it said before is over.
+                Some(failed) if !failed.is_told => failed.fault.kind = FaultKind::Restarting,
+                _ => {
+                    self.failed.remove(&robot.robot);
+                    self.left.remove(&robot.robot);
+                }
+            }
         }
         let is_new = robot.active && { self.active.insert(robot.robot, Duration::from_micros(robot.period)).is_none() };
         self.changed |= is_new;
@@ -395,7 +273,9 @@ impl OpenLuggage {
         match situation.stage {
             CriticalStage::Request => {
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
-                    (piece.taken, piece.asked) = (None, None);
+                    (piece.taken, piece.asked, piece.left_by) = (None, None, None);
+                    piece.lies_at(from);
+                    self.changed = true;
                     self.waiting.remove(&(piece.since, luggage));
                     self.helps.insert(luggage, situation.clone());
                 }
@@ -405,6 +285,7 @@ impl OpenLuggage {
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
                     // For who takes it away from the healer, it lies where the broken robot left it.
                     (piece.from, piece.taken, piece.asked) = (from, Some(situation.healer), None);
+                    piece.left_by = None;
                     self.waiting.remove(&(piece.since, luggage));
                 }
             }
@@ -430,6 +311,8 @@ impl OpenLuggage {
                 if let Some(piece) = self.pieces.get_mut(&response.luggage) {
                     piece.waits = response.stage == LuggageStage::Request;
                     piece.taken = (!piece.waits).then_some(response.robot);
+                    // A robot that is out said so before.
+                    piece.left_by = piece.taken.take_if(|robot| self.gone.is_out(*robot));
                     piece.asked = None;
                     let key = (piece.since, response.luggage);
                     if piece.waits { _ = self.waiting.insert(key) } else { _ = self.waiting.remove(&key) }
@@ -471,9 +354,12 @@ impl OpenLuggage {
         if !std::mem::take(&mut self.changed) || !self.seen {
             return Vec::new();
         }
-        let OpenLuggage { pieces, helps, active, broken, waiting, .. } = self;
-        let can =
-            |piece: &Piece| active.keys().filter(|robot| !broken.contains(robot)).any(|robot| piece.is_for(*robot));
+        let OpenLuggage { pieces, helps, active, broken, failed, waiting, .. } = self;
+        let returning = failed.values().map(|failed| &failed.fault);
+        let returning = returning.filter(|fault| fault.kind == FaultKind::Restarting).map(|fault| fault.robot);
+        let able: BTreeSet<u32> =
+            active.keys().copied().filter(|robot| !broken.contains(robot)).chain(returning).collect();
+        let can = |piece: &Piece| able.iter().any(|robot| piece.is_for(*robot));
         let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
         let hopeless = hopeless.map(|(luggage, piece)| {
             waiting.remove(&(piece.since, luggage));

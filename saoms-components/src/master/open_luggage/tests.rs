@@ -1,6 +1,7 @@
 use saoms_api::Cause;
 
 use super::*;
+use crate::messages::Fault;
 
 fn robot(robot: u32, active: bool) -> RobotList {
     RobotList { robot, active, ..RobotList::default() }
@@ -119,7 +120,7 @@ fn luggage_of_a_robot_that_is_gone_waits_again_where_it_lies() {
     open.hear_response(&EventLuggage { robot: 2, ..taken(3) });
     let help = CriticalSituation { critical: 1, luggage: 2, ..CriticalSituation::default() };
     open.hear_situation(&help);
-    open.take_away(1, heard(5));
+    open.take_away(&Fault::gone(1), heard(5));
     assert_eq!(again(&mut open, true), [], "the world says where it lies");
     open.hear_removal(&Removal { robot: 1, block: block(4), luggage: vec![1], delivered: Vec::new() });
     assert_eq!(again(&mut open, true), [(1, 1, 4)], "the broken robot asked for help with the other piece");
@@ -132,6 +133,6 @@ fn luggage_of_a_robot_that_is_gone_waits_again_where_it_lies() {
     assert!(open.hear_robot(&robot(1, true), heard(6)), "it is back");
     open.hear_response(&taken(1));
     assert_eq!(again(&mut open, true), []);
-    open.take_away(1, heard(9));
+    open.take_away(&Fault::gone(1), heard(9));
     assert_eq!(again(&mut open, false), [(1, 1, 4)], "nobody else can say where it lies");
 }

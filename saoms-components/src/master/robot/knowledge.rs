@@ -7,7 +7,7 @@ use saoms_api::{Cause, Context, Extras, Field, Knowledge, Subscription, Time};
 
 use super::work::Work;
 use crate::gone::Gone;
-use crate::messages::{EnvironmentEvent, EventLuggage, Fault, FaultKind, RobotList};
+use crate::messages::{EnvironmentEvent, EventLuggage, Fault, RobotList};
 use crate::robot::Policy;
 use crate::validation::{MessageValidator, Validate};
 
@@ -110,8 +110,8 @@ impl MasterRobotKnowledge {
         context: &mut Context<'_>,
     ) {
         for (header, fault) in context.receive(&faults).with_headers() {
-            if fault.kind == FaultKind::Gone && self.validator.accepts(fault, header, None, context) {
-                self.gone.note(fault.robot, header);
+            if fault.silences() && self.validator.accepts(fault, header, None, context) {
+                self.gone.note(fault, header);
                 self.hear(&RobotList { robot: fault.robot, active: false, ..RobotList::default() });
             }
         }

@@ -16,7 +16,7 @@ pub(crate) struct HardwareClient {
     hardware: HardwareReference,
     wired: bool,
     entered: bool,
-    /// True while the component behind the reference is not started.
+    /// True while the component behind the reference is not started, or has failed.
     absent: bool,
     /// True once it is out of service.
     retired: bool,
@@ -77,6 +77,7 @@ impl HardwareClient {
     /// Asks about whatever it may do.
     pub(crate) fn ask(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<Progress>, Failure> {
         let answer = self.hardware.poll(context, robot);
+        self.absent = is_absent(&answer);
         self.patience.note(is_over(&answer), busy(&answer), context);
         reply(answer)
     }
@@ -149,7 +150,7 @@ impl HardwareClient {
             return Ok(Reply::Answer((block, None)));
         }
         let answer = self.hardware.enter(context, robot, name.to_owned(), block);
-        self.absent = matches!(answer, Err(CallError::NotRunning { .. }));
+        self.absent = is_absent(&answer);
         // That the hardware is not started is told by others.
         self.patience.note(self.absent || answer.is_ok(), busy(&answer), context);
         let block = match reply(answer)? {
@@ -197,6 +198,7 @@ impl HardwareClient {
             return Ok(Reply::Answer(Progress::Done));
         }
         let answer = self.hardware.begin(context, robot, action);
+        self.absent = is_absent(&answer);
         self.patience.note(is_over(&answer), busy(&answer), context);
         let progress = reply(answer)?;
         if matches!(progress, Reply::Answer(Progress::Running)) {
@@ -237,6 +239,7 @@ impl HardwareClient {
     fn call_retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<Block>, CallError> {
         let block = if self.wired && self.entered {
             let answer = self.hardware.retire(context, robot);
+            self.absent = is_absent(&answer);
             self.patience.note(busy(&answer).is_none(), busy(&answer), context);
             Some(answer?)
         } else {
@@ -250,6 +253,11 @@ impl HardwareClient {
 /// True if nothing is running after a call, whatever came of it.
 fn is_over(answer: &Result<Progress, CallError>) -> bool {
     !matches!(answer, Ok(Progress::Running) | Err(CallError::Busy { .. }))
+}
+
+/// True if the component behind the reference is not started, or has failed.
+fn is_absent<T>(answer: &Result<T, CallError>) -> bool {
+    matches!(answer, Err(CallError::NotRunning { .. }))
 }
 
 /// The name of a component that was busy.

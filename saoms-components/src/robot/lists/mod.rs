@@ -43,8 +43,10 @@ pub struct Lists {
     pub charging_places: Vec<Block>,
     /// Robots that cannot move any more and whose position is not known yet.
     pub lost: Vec<u32>,
-    /// Robots that are off the floor.
+    /// Robots that are off the floor, or whose component failed.
     pub(crate) gone: Gone,
+    /// True in an execution in which the others may not count what this robot is interested in: it takes that back.
+    pub(crate) is_doubted: bool,
     /// Longest period of the other robots, in microseconds.
     slowest_period: u64,
 }
@@ -65,6 +67,7 @@ impl Lists {
             charging_places: Vec::new(),
             lost: Vec::new(),
             gone: Gone::default(),
+            is_doubted: false,
             slowest_period: 0,
         }
     }
@@ -106,11 +109,16 @@ impl Lists {
 
     /// Forgets a robot that is off the floor, but for its charger, where it starts again.
     pub(super) fn forget(&mut self, robot: u32) {
+        self.end_of(robot);
+        self.peers.forget(robot);
+        self.lost.retain(|lost| *lost != robot);
+    }
+
+    /// A robot is not active any more: what it was interested in and offered does not count.
+    pub(super) fn end_of(&mut self, robot: u32) {
         self.helps.hear_robot(&RobotList { robot, active: false, ..RobotList::default() });
         self.requests.forget(robot);
-        self.peers.forget(robot);
         self.end(robot);
-        self.lost.retain(|lost| *lost != robot);
     }
 
     /// Forgets a robot that is out of earshot, but for the block of its charger, where this one can charge.

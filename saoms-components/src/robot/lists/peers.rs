@@ -1,12 +1,23 @@
+use saoms_api::Time;
+
 use crate::grid::Block;
-use crate::messages::Position;
+use crate::messages::{IMMOVABLE, Position};
 
 /// Blocks that the other robots hold and want, as they reported them.
 #[derive(Debug)]
 pub struct Peers {
     number: u32,
-    /// Newest position of each robot and the period in which it arrived, by robot.
-    newest: Vec<(Position, u64)>,
+    /// Newest position of each robot, by robot.
+    newest: Vec<Newest>,
+    period: u64,
+}
+
+/// The newest position of a robot.
+#[derive(Clone, Debug)]
+struct Newest {
+    position: Position,
+    sent: Time,
+    /// The period in which it arrived.
     period: u64,
 }
 
@@ -17,19 +28,46 @@ impl Peers {
     }
 
     /// Handles the positions that arrived for this period, without the robot's own.
-    pub fn hear<'a>(&mut self, positions: impl Iterator<Item = &'a Position>) {
+    pub fn hear<'a>(&mut self, positions: impl Iterator<Item = (&'a Position, Time)>) {
         self.period += 1;
-        for position in positions.filter(|position| position.robot != self.number) {
-            match self.newest.binary_search_by_key(&position.robot, |(known, _)| known.robot) {
-                Ok(place) => self.newest[place] = (position.clone(), self.period),
-                Err(place) => self.newest.insert(place, (position.clone(), self.period)),
+        for (position, sent) in positions.filter(|(position, _)| position.robot != self.number) {
+            let newest = Newest { position: position.clone(), sent, period: self.period };
+            match self.place(position.robot) {
+                Ok(place) => self.newest[place] = newest,
+                Err(place) => self.newest.insert(place, newest),
             }
         }
     }
 
+    /// A robot failed at a time, and stands on its block, which is this one if that is known: otherwise it is on one of
+    /// those that it held. False if it said later where it is.
+    pub(in crate::robot) fn stop(&mut self, robot: u32, block: Option<Block>, since: Time) -> bool {
+        let known = self.place(robot);
+        match (known, block) {
+            (Ok(place), _) if self.newest[place].sent > since => return false,
+            (Ok(place), block) => {
+                let position = &mut self.newest[place].position;
+                position.priority = IMMOVABLE;
+                if let Some(block) = block {
+                    (position.block, position.next, position.wanted) = (block, block, block);
+                }
+            }
+            (Err(place), Some(block)) => {
+                let position = Position { robot, block, next: block, wanted: block, priority: IMMOVABLE };
+                self.newest.insert(place, Newest { position, sent: since, period: self.period });
+            }
+            (Err(_), None) => return false,
+        }
+        true
+    }
+
+    fn place(&self, robot: u32) -> Result<usize, usize> {
+        self.newest.binary_search_by_key(&robot, |newest| newest.position.robot)
+    }
+
     /// Forgets the position of a robot.
     pub(in crate::robot) fn forget(&mut self, robot: u32) {
-        if let Ok(place) = self.newest.binary_search_by_key(&robot, |(known, _)| known.robot) {
+        if let Ok(place) = self.place(robot) {
             self.newest.remove(place);
         }
     }
@@ -37,18 +75,17 @@ impl Peers {
     /// Positions that arrived in this period.
     pub fn heard(&self) -> impl Iterator<Item = &Position> + Clone {
         let period = self.period;
-        self.newest.iter().filter(move |(_, heard)| *heard == period).map(|(position, _)| position)
+        self.newest.iter().filter(move |newest| newest.period == period).map(|newest| &newest.position)
     }
 
     /// All positions, by number of the robot.
     pub fn all(&self) -> impl Iterator<Item = &Position> + Clone {
-        self.newest.iter().map(|(position, _)| position)
+        self.newest.iter().map(|newest| &newest.position)
     }
 
     /// Newest position of a robot.
     pub fn get(&self, robot: u32) -> Option<&Position> {
-        let place = self.newest.binary_search_by_key(&robot, |(known, _)| known.robot).ok()?;
-        self.newest.get(place).map(|(position, _)| position)
+        self.newest.get(self.place(robot).ok()?).map(|newest| &newest.position)
     }
 
     /// The other robot on the block, if one reported that.

@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use saoms_api::{Cause, Header, Time};
 
-use super::{Lists, Rival};
+use super::{Lists, Peers, Rival};
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage, Position, RobotList};
 
@@ -117,8 +117,9 @@ fn active_robots_are_listed_by_number_without_oneself() {
 fn the_newest_position_of_each_counts() {
     let mut lists = Lists::new(MINE);
     let position = |robot, x| Position { robot, block: Block::new(x, 0), ..Position::default() };
-    lists.peers.hear([position(3, 0), position(1, 4), position(MINE, 7), position(3, 1)].iter());
-    lists.peers.hear([position(3, 2)].iter());
+    let hear = |peers: &mut Peers, all: &[Position]| peers.hear(all.iter().map(|position| (position, Time::START)));
+    hear(&mut lists.peers, &[position(3, 0), position(1, 4), position(MINE, 7), position(3, 1)]);
+    hear(&mut lists.peers, &[position(3, 2)]);
     let shown = |peers: Vec<&Position>| peers.iter().map(|peer| (peer.robot, peer.block.x)).collect::<Vec<_>>();
     assert_eq!(shown(lists.peers.all().collect()), [(1, 4), (3, 2)]);
     assert_eq!(shown(lists.peers.heard().collect()), [(3, 2)]);

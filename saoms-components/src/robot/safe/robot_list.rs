@@ -77,13 +77,15 @@ impl Loop for SafeRobotList {
         _context: &mut Context<'_>,
     ) -> Result<Option<SafeRobotListSymptom>, Failure> {
         let (battery, in_charge) = (knowledge.battery.percent(), knowledge.variables.in_charge);
-        let news = self.said.as_ref().is_none_or(|said| {
-            said.in_charge != in_charge
-                || (said.battery - battery).abs() >= BATTERY_STEP
-                || said.asleep != knowledge.variables.asleep
-                || said.charger != knowledge.charge_block
-                || knowledge.variables.critical
-        });
+        let says_again = std::mem::take(&mut knowledge.says_again);
+        let news = says_again
+            || self.said.as_ref().is_none_or(|said| {
+                said.in_charge != in_charge
+                    || (said.battery - battery).abs() >= BATTERY_STEP
+                    || said.asleep != knowledge.variables.asleep
+                    || said.charger != knowledge.charge_block
+                    || knowledge.variables.critical
+            });
         let critical = knowledge.variables.critical;
         Ok(news.then_some(SafeRobotListSymptom { battery, in_charge, critical }))
     }

@@ -35,9 +35,14 @@ pub(crate) struct Lasting {
 impl Lasting {
     /// Begins an instance.
     pub(super) fn begin(&mut self) {
-        self.goes_on = self.saved.as_ref().is_some_and(|saved| !saved.is_nothing());
+        self.goes_on = self.will_go_on();
         (self.continued, self.touched) = (false, false);
         self.counted.clear();
+    }
+
+    /// True if the next instance goes on from a saved state.
+    pub(crate) fn will_go_on(&self) -> bool {
+        self.saved.as_ref().is_some_and(|saved| !saved.is_nothing())
     }
 
     /// True while an instance initializes that goes on from a saved state.

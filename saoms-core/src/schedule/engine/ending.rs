@@ -81,6 +81,7 @@ impl Engine {
                 self.emit(now, index, Occurrence::Abandoned);
                 self.stops.request_of(index);
                 self.stop_its_hardware(index);
+                self.tell_outage(index, false, now);
             }
         }
     }

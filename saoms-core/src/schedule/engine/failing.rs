@@ -102,6 +102,7 @@ impl Engine {
         let Told { reason, restart } = told.unwrap_or_else(|| self.tell(&mut body.part, job, failure, now));
         // Meanwhile, the end of the run may have begun.
         let pause = restart.filter(|_| self.stays(index, job));
+        let goes_on = pause.is_some() && body.part.lasting.will_go_on();
         if pause.is_some() {
             body.keep_unread(&mut self.bus);
         } else {
@@ -116,6 +117,9 @@ impl Engine {
                 slot.restarting = true;
                 slot.state = SlotState::Starting;
                 self.enqueue(index, now.saturating_add(nanos(pause)));
+                if !goes_on {
+                    self.tell_outage(index, true, now);
+                }
             }
             None => {
                 slot.state = SlotState::Failed;
@@ -125,6 +129,7 @@ impl Engine {
                     self.reasons.push(reason);
                 }
                 self.release(index, body, now);
+                self.tell_outage(index, false, now);
                 self.lost(index, now);
                 if let PendingRequest::Return { lasting } = pending {
                     self.request(index, Request::Schedule { lasting }, now);

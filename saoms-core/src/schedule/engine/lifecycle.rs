@@ -62,8 +62,11 @@ impl Engine {
             SlotState::Starting if slot.body.is_some() => {
                 slot.state = SlotState::Idle;
                 slot.entry = NEVER;
-                slot.restarting = false;
+                let failed = std::mem::take(&mut slot.restarting);
                 self.leave_topics(index, now);
+                if failed {
+                    self.tell_outage(index, false, now);
+                }
                 self.forget_vote(index, now);
             }
             SlotState::Active if slot.body.is_some() => self.leave(index, now),

@@ -7,6 +7,7 @@ mod execution;
 pub(super) mod failing;
 pub(super) mod faults;
 pub(super) mod lifecycle;
+mod notices;
 mod overrun;
 pub(super) mod queue;
 mod reaction;

@@ -87,7 +87,12 @@ impl Engine {
         let mut reasons = self.reasons.clone();
         let status = match self.cause {
             Some(EndCause::Interrupted) => RunStatus::Interrupted,
-            _ if !reasons.is_empty() => RunStatus::Failed,
+            cause if !reasons.is_empty() => {
+                // What the failure left behind.
+                let standstill = self.standstill.told.as_ref().filter(|_| cause == Some(EndCause::Standstill));
+                reasons.extend(standstill.map(ToString::to_string));
+                RunStatus::Failed
+            }
             _ if let Some(names) = self.names(|slot| slot.gave_up) => {
                 reasons.push(format!("work was given up, reported by {names}"));
                 RunStatus::Incomplete

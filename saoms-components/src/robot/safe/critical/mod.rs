@@ -90,7 +90,9 @@ impl Loop for SafeCriticalSituation {
             }
         }
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
-            if !knowledge.accepts(situation, header, context) {
+            let is_over =
+                situation.stage == CriticalStage::Intention && knowledge.lists.gone.is_over(situation.healer, header);
+            if !knowledge.accepts(situation, header, context) || is_over {
                 continue;
             }
             // A robot that only charges looks for its substitute itself. One that started again learns from the master
@@ -301,7 +303,7 @@ impl SafeCriticalSituation {
     fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<SafeCriticalSymptom> {
         let Some(request) = knowledge.lists.helps.claimed() else { return Some(SafeCriticalSymptom::Gone) };
         let situation = request.situation.clone();
-        if situation.kind != CriticalKind::Idle && knowledge.must_charge {
+        if knowledge.lists.is_doubted || situation.kind != CriticalKind::Idle && knowledge.must_charge {
             return Some(SafeCriticalSymptom::Beaten { situation, by: None });
         }
         let by = closer_rival(request, self.said_at, knowledge.number);

@@ -292,7 +292,7 @@ impl SafeEventLuggage {
             return Some(SafeLuggageSymptom::Gone);
         };
         let job = request.job;
-        if knowledge.must_charge {
+        if knowledge.must_charge || knowledge.lists.is_doubted {
             return Some(SafeLuggageSymptom::Beaten { job, by: None });
         }
         let by = closer_rival(request, self.said_at, knowledge.number);

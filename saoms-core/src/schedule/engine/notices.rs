@@ -1,0 +1,62 @@
+//! What the fleet is told of components that failed and lost what they knew, so that others act in their place.
+
+use saoms_api::Time;
+use saoms_api::extension::{FailureNotice, Outage};
+use saoms_lang::assembly::ComponentSpec;
+
+use super::{Engine, RunPhase};
+use crate::bus::TopicId;
+
+impl Engine {
+    /// Tells the site of a component that it failed and lost what it knew. One that never executed had nothing.
+    #[cold]
+    pub(super) fn tell_outage(&mut self, index: u32, restarts: bool, now: u64) {
+        let slot = &self.slots[index as usize];
+        if self.phase != RunPhase::Running || slot.last_due.is_none() {
+            return;
+        }
+        let number = slot.spec.class.declaration().speaker(&slot.spec.values);
+        let Some(number) = number.and_then(|number| u32::try_from(number).ok()) else { return };
+        let outage = Outage { number, since: Time::from_nanos(now), restarts };
+        for notice in FailureNotice::linked() {
+            let slot = &self.slots[index as usize];
+            let topics = if publishes(&slot.spec, notice.about.name) {
+                self.topics_of_readers(notice.topic.name, &slot.spec.site)
+            } else {
+                Vec::new()
+            };
+            if topics.is_empty() {
+                continue;
+            }
+            let name = std::sync::Arc::clone(&slot.name);
+            let (bytes, text) = (notice.message)(outage);
+            let cause = self.record_outside(now, &name, text);
+            self.standstill.note_effect(now);
+            for topic in topics {
+                self.deliver_injection(now, cause, topic, (bytes.clone(), None, None), None);
+            }
+        }
+    }
+
+    /// The topics, as they are called on the bus, that components of a site read under this name.
+    fn topics_of_readers(&self, declared: &str, site: &str) -> Vec<TopicId> {
+        let mut topics: Vec<TopicId> = Vec::new();
+        for slot in self.slots.iter().filter(|slot| slot.is_member() && slot.spec.site == site) {
+            let of_loops = slot.spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
+            let mut all = slot.spec.class.declaration().subscribes.iter().chain(of_loops);
+            if !all.any(|topic| topic.name == declared) {
+                continue;
+            }
+            if let Some(topic) = self.bus.find(&slot.spec.topic(declared)).filter(|topic| !topics.contains(topic)) {
+                topics.push(topic);
+            }
+        }
+        topics
+    }
+}
+
+/// True if the component publishes on the topic that is declared by this name.
+fn publishes(spec: &ComponentSpec, declared: &str) -> bool {
+    let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().publishes);
+    spec.class.declaration().publishes.iter().chain(of_loops).any(|topic| topic.name == declared)
+}
