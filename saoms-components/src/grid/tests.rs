@@ -157,9 +157,10 @@ fn distances_are_those_of_the_shortest_ways() {
     let map = Map::read("....\n.@@.\n.@..\n..@.\n@@..\n").unwrap();
     let mut distances = Distances::default();
     for to in [Block::new(0, 0), Block::new(3, 4), Block::new(0, 3)] {
-        distances.search(&map, to, &Map::new(4, 5));
+        distances.search(&map, to);
+        let none = Map::new(4, 5);
         for (place, moves) in reference(&map, to).into_iter().enumerate() {
-            let cost = distances.of(&map, map.block(place));
+            let cost = distances.of(&map, &none, map.block(place));
             // A move against a lane costs a quarter more.
             let most = moves.saturating_mul(MOVE + 1);
             assert!((moves.saturating_mul(MOVE)..=most).contains(&cost), "{} to {to}: {cost}", map.block(place));
@@ -173,12 +174,41 @@ fn ways_keep_off_costly_blocks_where_the_way_around_is_short() {
     let mut costly = Map::new(5, 3);
     costly.set_blocked(Block::new(2, 1));
     let mut distances = Distances::default();
-    distances.search(&map, to, &costly);
-    let direct = distances.of(&map, Block::new(2, 1));
-    assert!(distances.of(&map, Block::new(1, 1)) < direct + 3 * MOVE, "goes around");
+    distances.search(&map, to);
+    let direct = distances.of(&map, &costly, Block::new(2, 1));
+    assert!(distances.of(&map, &costly, Block::new(1, 1)) < direct + 3 * MOVE, "goes around");
     let mut wall = costly.clone();
     wall.set_blocked(Block::new(2, 0));
     wall.set_blocked(Block::new(2, 2));
-    distances.search(&map, to, &wall);
-    assert!(distances.of(&map, Block::new(1, 1)) < UNREACHABLE, "goes through");
+    distances.search(&map, to);
+    assert!(distances.of(&map, &wall, Block::new(1, 1)) < UNREACHABLE, "goes through");
+}
+
+/// Random maps, chargers and questions in any order: what was asked before changes no answer, and nor do 600 searches.
+#[test]
+fn a_search_that_goes_on_finds_what_a_whole_one_finds() {
+    let mut state = 7_u32;
+    let mut random = |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % below
+    };
+    let mut one_by_one = Distances::default();
+    for _ in 0..600 {
+        let (width, height) = (9, 7);
+        let (mut map, mut costly) = (Map::new(width, height), Map::new(width, height));
+        let place = |number: u32| Map::new(width, height).block(number as usize);
+        for _ in 0..random(20) {
+            map.set_blocked(place(random(63)));
+            costly.set_blocked(place(random(63)));
+        }
+        let to = place(random(63));
+        let mut whole = Distances::default();
+        whole.search_beside(&map, to);
+        let expected: Vec<u32> = (0..63).map(|number| whole.of(&map, &costly, place(number))).collect();
+        one_by_one.search_beside(&map, to);
+        for _ in 0..10 {
+            let number = random(63);
+            assert_eq!(one_by_one.of(&map, &costly, place(number)), expected[number as usize], "{map:?} {to}");
+        }
+    }
 }

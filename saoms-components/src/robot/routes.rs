@@ -1,3 +1,5 @@
+use std::cell::RefCell;
+
 use saoms_api::Field;
 
 use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
@@ -12,8 +14,8 @@ pub struct Routes {
     area: Option<Area>,
     /// Robots that do not move any more, and their blocks: several for one that may be on any of them.
     obstacles: Vec<(u32, Block)>,
-    /// Cached searches: [`WAYS`] of them, once one was needed.
-    ways: Vec<Way>,
+    /// Cached searches: [`WAYS`] of them, once one was needed. Asking about a block continues a search.
+    ways: RefCell<Vec<Way>>,
     /// Counter of lookups, for the age of cached searches.
     clock: u32,
     /// Index in `ways` of the search for the current goal.
@@ -214,7 +216,7 @@ impl Routes {
 
     fn forget_searches(&mut self) {
         self.changes = self.changes.wrapping_add(1);
-        for way in &mut self.ways {
+        for way in self.ways.get_mut() {
             way.distances.clear();
         }
     }
@@ -261,7 +263,8 @@ impl Routes {
     fn cost(&self, place: usize, from: Block, to: Block) -> u32 {
         match &self.area {
             Some(area) if area.searched => {
-                self.ways.get(place).map_or(UNREACHABLE, |way| way.distances.of(&area.map, from))
+                let mut ways = self.ways.borrow_mut();
+                ways.get_mut(place).map_or(UNREACHABLE, |way| way.distances.of(&area.map, &area.chargers, from))
             }
             _ if self.is_free(from) && (self.is_free(to) || self.is_obstacle(to)) => {
                 from.distance(to).saturating_mul(MOVE)
@@ -274,20 +277,21 @@ impl Routes {
     /// longest time.
     fn way_to(&mut self, to: Block) -> usize {
         let Some(area) = self.area.as_ref().filter(|area| area.searched) else { return 0 };
-        self.ways.resize_with(WAYS, Way::default);
         self.clock = self.clock.wrapping_add(1);
-        let known = self.ways.iter().position(|way| way.distances.to() == Some(to));
+        let (clock, ways) = (self.clock, self.ways.get_mut());
+        ways.resize_with(WAYS, Way::default);
+        let known = ways.iter().position(|way| way.distances.to() == Some(to));
         let oldest = || {
-            let ages = self.ways.iter().enumerate().map(|(place, way)| (self.clock.wrapping_sub(way.asked), place));
+            let ages = ways.iter().enumerate().map(|(place, way)| (clock.wrapping_sub(way.asked), place));
             ages.max().map_or(0, |(_, place)| place)
         };
         let place = known.unwrap_or_else(oldest);
         let beside = self.obstacles.iter().any(|(_, obstacle)| *obstacle == to);
-        let way = &mut self.ways[place];
-        way.asked = self.clock;
+        let way = &mut ways[place];
+        way.asked = clock;
         if known.is_none() {
             let search = if beside { Distances::search_beside } else { Distances::search };
-            search(&mut way.distances, &area.map, to, &area.chargers);
+            search(&mut way.distances, &area.map, to);
         }
         place
     }

@@ -81,8 +81,8 @@ impl Ground {
         let way = ways.entry(goal).or_default();
         way.used = *round;
         if way.distances.to() != Some(goal) {
-            way.distances.search_beside(passable, goal, chargers);
+            way.distances.search_beside(passable, goal);
         }
-        if from == goal { 0 } else { way.distances.of(passable, from) }
+        if from == goal { 0 } else { way.distances.of(passable, chargers, from) }
     }
 }

@@ -13,6 +13,8 @@ pub(crate) struct Ledger {
     members: BTreeMap<u32, Member>,
     /// The robot that holds each block of the territory, row by row; 0 for none.
     holders: Vec<u32>,
+    /// True if two robots held one block at some time: somebody put one of them there.
+    contested: bool,
 }
 
 /// Number of rounds after which a robot that could go on, and says nothing, counts as an obstacle.
@@ -83,7 +85,7 @@ impl Ledger {
     /// The record of a zone that granted nothing yet.
     pub(crate) fn new(territory: Territory) -> Ledger {
         let size = territory.width as usize * territory.height as usize;
-        Ledger { territory, members: BTreeMap::new(), holders: vec![0; size] }
+        Ledger { territory, members: BTreeMap::new(), holders: vec![0; size], contested: false }
     }
 
     /// The same record as an earlier one.
@@ -140,10 +142,10 @@ impl Ledger {
     }
 
     fn hold(&mut self, block: Block, robot: u32) {
-        if let Some(place) = self.place(block)
-            && self.holders[place] == 0
-        {
-            self.holders[place] = robot;
+        let Some(place) = self.place(block) else { return };
+        match self.holders[place] {
+            0 => self.holders[place] = robot,
+            other => self.contested |= other != robot,
         }
     }
 
@@ -151,7 +153,8 @@ impl Ledger {
     fn free(&mut self, block: Block, robot: u32) {
         let Some(place) = self.place(block).filter(|place| self.holders[*place] == robot) else { return };
         let stands_there = |(_, member): &(&u32, &Member)| member.steps.iter().any(|step| step.block == block);
-        self.holders[place] = self.members.iter().find(stands_there).map_or(0, |(other, _)| *other);
+        let other = if self.contested { self.members.iter().find(stands_there) } else { None };
+        self.holders[place] = other.map_or(0, |(other, _)| *other);
     }
 
     /// Takes in a request.

@@ -28,10 +28,10 @@ impl<'a> Ways<'a> {
         let Some(map) = self.map else { return Some(from.distance(to)) };
         let ways = self.searched.entry(from).or_insert_with(|| {
             let mut ways = Distances::default();
-            ways.search(map, from, &self.none);
+            ways.search(map, from);
             ways
         });
-        let cost = ways.of(map, to);
+        let cost = ways.of(map, &self.none, to);
         (cost != UNREACHABLE).then(|| cost.div_ceil(MOVE))
     }
 }
