@@ -2,8 +2,9 @@
 
 use saoms_api::{Failure, Field, Message, Saved, Time};
 
+use super::Environment;
+use super::open_job::OpenJob;
 use super::player::{Player, PlayerMemory};
-use super::{Environment, OpenJob};
 use crate::validation::SpeakerMemory;
 
 #[derive(Clone, Debug, Message)]
@@ -24,19 +25,15 @@ struct Playing {
     player: PlayerMemory,
 }
 
-#[derive(Clone, Copy, Debug, Field)]
+#[derive(Clone, Debug, Field)]
 struct OpenPiece {
     luggage: u32,
-    passed_on: bool,
-    is_visit: bool,
+    job: OpenJob,
 }
 
 impl Environment {
     pub(super) fn save_state(&self) -> Saved {
-        let open = self.open.iter().map(|(&luggage, &job)| {
-            let OpenJob { passed_on, is_visit } = job;
-            OpenPiece { luggage, passed_on, is_visit }
-        });
+        let open = self.open.iter().map(|(&luggage, job)| OpenPiece { luggage, job: job.clone() });
         let playing = self.playing.as_ref();
         Saved::of(&EnvironmentMemory {
             playing: playing.map(|(start, player)| Playing { start: *start, player: player.memory() }),
@@ -58,8 +55,7 @@ impl Environment {
             None => None,
         };
         self.played = usize::try_from(memory.played).unwrap_or(usize::MAX);
-        let job = |piece: &OpenPiece| OpenJob { passed_on: piece.passed_on, is_visit: piece.is_visit };
-        self.open = memory.open.iter().map(|piece| (piece.luggage, job(piece))).collect();
+        self.open = memory.open.into_iter().map(|piece| (piece.luggage, piece.job)).collect();
         (self.luggage, self.visits) = (memory.luggage, memory.visits);
         self.validator.restore(memory.speakers);
         (self.has_world, self.done) = (memory.has_world, memory.done);

@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod class_events_tests;
 mod memory;
+mod open_job;
 mod outside;
 mod player;
 mod scenario;
@@ -26,6 +27,7 @@ use crate::messages::{
 use crate::report::pieces;
 use crate::validation::MessageValidator;
 
+use open_job::OpenJob;
 use player::Player;
 
 pub use player::ScenarioEvent;
@@ -49,14 +51,6 @@ pub struct EnvironmentProperties {
     /// scenario that are due wait.
     #[property(range = 1..)]
     pub(crate) most_open: Option<u32>,
-}
-
-/// Luggage or a visit that is published and not done yet.
-#[derive(Clone, Copy, Debug, Default)]
-struct OpenJob {
-    /// True if it was passed on to the robots.
-    passed_on: bool,
-    is_visit: bool,
 }
 
 /// Plays a scenario: publishes its events at their times. Random values follow from the seed of the run.
@@ -147,6 +141,7 @@ impl Component for Environment {
             return Ok(());
         };
         let now = context.due().since(start);
+        self.publish_again(context)?;
         for _ in 0..MAX_EVENTS {
             if self.open.len() >= self.most_open {
                 break;
@@ -259,7 +254,8 @@ impl Environment {
             Some(ScenarioEvent::Luggage { from, to }) => {
                 self.luggage += 1;
                 let request = EventLuggage::request(self.luggage, from, to);
-                self.open.insert(self.luggage, OpenJob::default());
+                let job = OpenJob::new(vec![from, to], (false, 0), context.execution());
+                self.open.insert(self.luggage, job);
                 if !self.has_world {
                     context.count("luggage.open", 1);
                 }
@@ -274,7 +270,8 @@ impl Environment {
             Some(ScenarioEvent::Visit { stops, by }) => {
                 self.visits += 1;
                 let visit = Visit { visit: FIRST_VISIT + self.visits, robot: by.unwrap_or(0), stops };
-                self.open.insert(visit.visit, OpenJob { is_visit: true, passed_on: false });
+                let job = OpenJob::new(visit.stops.clone(), (true, visit.robot), context.execution());
+                self.open.insert(visit.visit, job);
                 context.count("errands.requested", 1);
                 context.count("errands.open", 1);
                 context.console(format_args!("Environment: Test{test}: {visit} at {now}"));

@@ -252,6 +252,10 @@ impl MasterEnvironment {
     fn sort(&mut self, context: &mut Context<'_>, header: Header, event: &EnvironmentEvent) -> Result<(), Failure> {
         for request in &event.luggage {
             let EventLuggage { luggage, from, to, .. } = *request;
+            if self.knowledge.open.job(luggage).is_some_and(|known| (known.job.from, known.job.to) == (from, to)) {
+                // Nobody has said yet what becomes of it.
+                continue;
+            }
             match self.knowledge.filter.luggage(request) {
                 Ok(()) => {
                     self.knowledge.open.add(luggage, from, to, context.now());
@@ -338,6 +342,9 @@ impl MasterEnvironment {
             return Ok(());
         }
         let MasterEnvironmentKnowledge { validator, filter, open, .. } = &mut self.knowledge;
+        if open.job(visit.visit).is_some_and(|known| [known.job.from, known.job.to] == visit.ends()) {
+            return Ok(());
+        }
         let known = filter.knows(visit.visit).then_some(Problem::KnownLuggage);
         let judged = visit.validate(header.sender, validator, filter.area());
         if let Some(problem) = known.or(judged.err()) {

@@ -158,3 +158,19 @@ fn much_luggage_at_once_overflows_no_queue() {
     assert_eq!(section(&run, "luggage")["requested"], 3000);
     assert_eq!(run.components.iter().map(|one| one.dropped).sum::<u64>(), 0);
 }
+
+/// A master that crashes may have heard of luggage and passed nothing on; the one that takes its place knows nothing.
+#[test]
+fn luggage_that_a_crashed_master_lost_is_asked_for_again() {
+    for at in 80..120 {
+        let scenario = format!(
+            "at 1s luggage (0,0) to (4,3); at 1s visit (3,3) then (0,1); at {}ms crash Master restart 1s",
+            10 * at
+        );
+        let report = Fleet::of_text(with_scenario(&scenario)).run(at, Duration::from_secs(200)).into_report();
+        let context = format!("crash at {} ms", 10 * at);
+        assert_eq!(section(&report, "luggage")["delivered"], 1, "{context}");
+        assert_eq!(section(&report, "errands")["finished"], 1, "{context}");
+        assert_eq!(report.outcome.status, RunStatus::Done, "{context}");
+    }
+}

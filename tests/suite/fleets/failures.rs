@@ -183,7 +183,7 @@ fn a_run_without_its_master_or_world_ends_and_says_what_it_waits_for() {
     expect_test::expect![[r#"
         Master at 2: Failed: 0 of 0 delivered, 0 given up, 0 collisions
           component `Master` failed: this execution fails by fault injection
-          nothing has happened since 0.600 s, and nothing more can: `World` waits for a robot to carry luggage 1 and 2 more pieces; `Environment` waits for a master of the environment to pass on luggage 1 and 2 more pieces on `ELMSTOPIC`; `MasterRobot` waits for landings and take-offs; `Robot1` and 2 more wait for luggage
+          nothing has happened since 75.500 s, and nothing more can: `World` waits for a robot to carry luggage 1 and 2 more pieces; `Environment` waits for a master of the environment to pass on luggage 1 and 2 more pieces on `ELMSTOPIC`; `MasterRobot` waits for landings and take-offs; `Robot1` and 2 more wait for luggage
         Master at 10: Failed: 3 of 3 delivered, 0 given up, 0 collisions
           component `Master` failed: this execution fails by fault injection
         World at 10: Failed: 0 of 3 delivered, 0 given up, 0 collisions

@@ -1,0 +1,56 @@
+//! Luggage and visits that are not done yet.
+
+use saoms_api::{Context, Failure, Field};
+
+use super::{Environment, MAX_EVENTS};
+use crate::grid::Block;
+use crate::messages::{EventLuggage, Visit};
+
+/// Luggage or a visit that is published and not done yet.
+#[derive(Clone, Debug, Field)]
+pub(super) struct OpenJob {
+    /// True if it was passed on to the robots.
+    pub(super) passed_on: bool,
+    /// Where it is collected and deposited, or the blocks to visit.
+    stops: Vec<Block>,
+    pub(super) is_visit: bool,
+    /// The only robot that may do it; 0 for any.
+    robot: u32,
+    /// Execution in which it is published again, unless it was passed on until then: a master that failed may have lost
+    /// it.
+    again: u64,
+    /// Number of executions from one publication to the next, which doubles.
+    pause: u64,
+}
+
+/// Number of executions after which luggage that nobody passed on is published again.
+const AGAIN: u64 = 50;
+
+impl OpenJob {
+    pub(super) fn new(stops: Vec<Block>, (is_visit, robot): (bool, u32), execution: u64) -> OpenJob {
+        OpenJob { passed_on: false, stops, is_visit, robot, again: execution + AGAIN, pause: 2 * AGAIN }
+    }
+}
+
+impl Environment {
+    /// Publishes luggage and visits again that nobody passed on.
+    pub(super) fn publish_again(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let execution = context.execution();
+        let due = self.open.iter_mut().filter(|(_, job)| !job.passed_on && job.again <= execution);
+        for (number, job) in due.take(MAX_EVENTS) {
+            job.again = execution + job.pause;
+            job.pause = job.pause.saturating_mul(2);
+            match (job.is_visit, job.stops.as_slice()) {
+                (true, stops) => {
+                    let visit = Visit { visit: *number, robot: job.robot, stops: stops.to_vec() };
+                    context.send(&self.visits_asked, visit)?;
+                }
+                (false, [from, to]) => {
+                    context.send(&self.events, EventLuggage::request(*number, *from, *to).into())?;
+                }
+                (false, _) => {}
+            }
+        }
+        Ok(())
+    }
+}
