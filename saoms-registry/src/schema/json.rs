@@ -19,7 +19,7 @@ impl Schema {
         Ok(value)
     }
 
-    /// The bytes of a message that is given as JSON.
+    /// The bytes of a message that is given as JSON. What is optional may be left out.
     ///
     /// # Errors
     /// The value is no such message: a field is missing, unknown or of another type, or a number is out of its range.
@@ -79,8 +79,10 @@ fn write_message(schema: &Schema, value: &Value, writer: &mut Writer) -> Result<
         writer.scalar([0]);
     }
     schema.fields.iter().try_for_each(|field| {
+        let absent = matches!(field.kind, Type::Optional(_)).then_some(&Value::Null);
         let value = object
             .get(&field.name)
+            .or(absent)
             .ok_or_else(|| SchemaError(format!("field `{}` of `{}` is missing", field.name, schema.name)))?;
         write(&field.kind, value, writer)
             .map_err(|SchemaError(error)| SchemaError(format!("field `{}`: {error}", field.name)))

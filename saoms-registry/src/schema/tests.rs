@@ -84,6 +84,9 @@ fn json_is_what_people_expect() {
     assert_eq!(value["half"], "NaN");
     assert_eq!(value["matrix"], json!([0.0, 0.0, 0.0]));
     assert_eq!(value["maybe"], json!(null));
+    let without = value.as_object().unwrap().iter().filter(|(name, _)| *name != "maybe");
+    let without = without.map(|(name, value)| (name.clone(), value.clone())).collect();
+    assert_eq!(schema().encode(&serde_json::Value::Object(without)), schema().encode(&value));
 }
 
 #[test]
