@@ -28,6 +28,8 @@ struct Scenario {
     faults: Faults,
     /// Number of blocks that are granted ahead.
     ahead: usize,
+    /// Number of blocks ahead that robots say they need.
+    needed: u32,
     /// Number up to which rounds of waiting are told apart: 0 where no maneuver is needed.
     waits: u32,
 }
@@ -66,6 +68,7 @@ struct Robot {
     at: Block,
     moving: Option<Block>,
     goal: Block,
+    needed: u32,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -102,7 +105,7 @@ impl Scenario {
         });
         let fleet = self.robots.iter().zip(1..).map(|(&(at, goal), robot)| {
             let (at, goal) = (Block::new(at.0, at.1), Block::new(goal.0, goal.1));
-            Robot { passage: Passage::new(robot, 1, at), at, moving: None, goal }
+            Robot { passage: Passage::new(robot, 1, at), at, moving: None, goal, needed: self.needed }
         });
         let mut state =
             State { zones: zones.collect(), robots: fleet.collect(), network: Vec::new(), faults: self.faults };
@@ -207,7 +210,7 @@ impl State {
             charger: one.goal,
             rank: if goal.is_some() { 10 - rank } else { 0 },
             standing: Standing::MakesWay,
-            ahead: 0,
+            ahead: one.needed,
         };
         for request in one.passage.requests(wish, again) {
             self.send(Message::Request(request));
@@ -335,6 +338,7 @@ const SQUARE: Scenario = Scenario {
     robots: &[((0, 0), (1, 1)), ((1, 1), (0, 0))],
     faults: NONE,
     ahead: 1,
+    needed: 0,
     waits: 0,
 };
 
@@ -369,6 +373,19 @@ fn messages_that_are_lost_or_come_twice_lead_to_no_collision_and_no_standstill()
         Scenario { faults: Faults { losses: 2, repetitions: 1, ..NONE }, ..BORDER },
         Scenario { faults: Faults { losses: 1, ..NONE }, ..BAY },
     ]);
+}
+
+#[test]
+fn blocks_that_are_granted_ahead_beside_other_robots_lead_to_no_collision_and_no_standstill() {
+    const TRACK: Scenario = Scenario {
+        name: "track",
+        map: "...\n...",
+        zones: &[(0, 3)],
+        robots: &[((0, 0), (2, 1)), ((2, 1), (0, 0))],
+        needed: 2,
+        ..SQUARE
+    };
+    explore(&[Scenario { needed: 2, faults: Faults { losses: 1, ..NONE }, ..SQUARE }, TRACK]);
 }
 
 #[test]
