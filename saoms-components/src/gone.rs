@@ -2,6 +2,7 @@
 
 use saoms_api::{Field, Header, Time};
 
+use crate::grid::Block;
 use crate::messages::{Fault, RobotList};
 
 /// The robots that are out, as a component heard of them. One of them is back when it says that it is active after
@@ -17,6 +18,8 @@ struct GoneRobot {
     since: Time,
     /// True if its component failed, so that it stands on its block.
     failed: bool,
+    /// That block, where it is known.
+    block: Option<Block>,
 }
 
 impl Gone {
@@ -24,7 +27,8 @@ impl Gone {
     pub(crate) fn note(&mut self, fault: &Fault, header: Header) {
         self.robots.retain(|known| known.robot != fault.robot);
         let since = fault.since.unwrap_or(header.sent);
-        self.robots.push(GoneRobot { robot: fault.robot, since, failed: fault.is_failure() });
+        let Fault { robot, block, .. } = *fault;
+        self.robots.push(GoneRobot { robot, since, failed: fault.is_failure(), block });
     }
 
     /// True if somebody took the robot off the floor.
@@ -56,6 +60,12 @@ impl Gone {
             self.robots.remove(place);
         }
         is_back
+    }
+
+    /// The robots whose component failed, with their blocks where they are known, and the time of the failure.
+    #[inline]
+    pub(crate) fn failed(&self) -> impl Iterator<Item = (u32, Option<Block>, Time)> {
+        self.robots.iter().filter(|known| known.failed).map(|known| (known.robot, known.block, known.since))
     }
 
     /// The numbers of the robots that are off the floor.

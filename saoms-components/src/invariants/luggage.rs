@@ -7,7 +7,9 @@ use saoms_api::host::SharedMessage;
 
 use super::tide::Tide;
 use super::{FINISHED, Finder, ONCE, TAKEN_OVER, bound};
-use crate::messages::{CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal};
+use crate::messages::{
+    Assignment, CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal,
+};
 
 /// The pieces of luggage of a site.
 #[derive(Debug, Default)]
@@ -41,10 +43,7 @@ impl Pieces {
     pub(super) fn hear(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {
         let Some(EventLuggage { robot, luggage, stage, .. }) = message.get::<EventLuggage>().cloned() else { return };
         match stage {
-            LuggageStage::Request => {
-                let new = Piece { requested: finder.at, delivered: None, is_given_up: false };
-                self.all.entry(luggage).or_insert(new);
-            }
+            LuggageStage::Request => self.request(luggage, finder.at),
             LuggageStage::Taken => _ = self.stranded.remove(&luggage),
             LuggageStage::Delivered => {
                 self.stranded.remove(&luggage);
@@ -66,6 +65,17 @@ impl Pieces {
                 }
             }
             LuggageStage::Interest | LuggageStage::Release | LuggageStage::Refused => {}
+        }
+    }
+
+    fn request(&mut self, luggage: u32, at: Time) {
+        self.all.entry(luggage).or_insert(Piece { requested: at, delivered: None, is_given_up: false });
+    }
+
+    /// A master that assigns luggage requests it from one robot.
+    pub(super) fn hear_assignment(&mut self, message: &SharedMessage, at: Time) {
+        if let Some(assignment) = message.get::<Assignment>() {
+            self.request(assignment.luggage, at);
         }
     }
 

@@ -18,7 +18,7 @@ use saoms_api::extension::{Counts, InvariantsRegistration, Measure, RunInvariant
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use crate::messages::{
-    AREA, COLLISION, CRITICAL_SITUATION, EVENT_LUGGAGE, FAULT, POSITION, REMOVAL, ROBOT_LIST, carries,
+    AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, EVENT_LUGGAGE, FAULT, POSITION, REMOVAL, ROBOT_LIST, carries,
 };
 use luggage::Pieces;
 use robots::Robots;
@@ -53,6 +53,7 @@ enum Content {
     Fault,
     Removal,
     Critical,
+    Assignment,
 }
 
 /// The invariants of one run. Each site has robots and luggage of its own.
@@ -96,6 +97,7 @@ fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
         one if carries(one, &FAULT) => Content::Fault,
         one if carries(one, &REMOVAL) => Content::Removal,
         one if carries(one, &CRITICAL_SITUATION) => Content::Critical,
+        one if carries(one, &ASSIGNMENT) => Content::Assignment,
         _ => return None,
     })
 }
@@ -144,6 +146,7 @@ impl RunInvariants for FleetInvariants {
                 self.tide.rise(at);
                 robots.hear_fault(message);
             }
+            Content::Assignment => pieces.hear_assignment(message, at),
             Content::Removal => pieces.hear_removal(message, at),
             Content::Critical => {
                 robots.hear_critical(message);

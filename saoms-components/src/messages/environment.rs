@@ -135,7 +135,11 @@ impl Validate for EventLuggage {
                 if robot != 0 {
                     validator.check_known(robot)?;
                 }
-                Problem::of_request(&EventLuggage { robot: 0, ..self.clone() }, area)
+                match Problem::of_request(&EventLuggage { robot: 0, ..self.clone() }, area) {
+                    // Luggage that is known can be at its destination: on a robot that broke there.
+                    Err(Problem::There { .. }) if robot != 0 || validator.is_speaker(sender) => Ok(()),
+                    judged => judged,
+                }
             }
             // The component that requested luggage gives it up without a robot's number, even if the request was
             // impossible.

@@ -102,16 +102,29 @@ impl RobotKnowledge {
     pub(crate) fn retire(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let Reply::Answer(block) = self.hardware.retire(context, self.number)? else { return Ok(false) };
         self.note_running();
-        self.block = block.unwrap_or(self.block);
+        self.stays_at(block);
         Ok(true)
+    }
+
+    /// Takes in where its hardware stays, which it may not have heard of: its last move was over before it was stopped.
+    fn stays_at(&mut self, block: Option<Block>) {
+        let Some(block) = block.filter(|block| *block != self.block) else { return };
+        self.block = block;
+        if let Some(zones) = &mut self.zones {
+            zones.arrive(block);
+        }
     }
 
     /// Takes the hardware out of service at the end of the robot. Hardware that is busy is a failure, so that the
     /// shutdown is tried again.
     pub(crate) fn leave_hardware(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let block = self.hardware.leave(context, self.number)?.unwrap_or(self.block);
-        // Where it starts again it is in nobody's way, should somebody hear of it who does not know that it is gone.
-        self.block = if self.gone { self.charge_block } else { block };
+        let block = self.hardware.leave(context, self.number)?;
+        self.stays_at(block);
+        if self.gone {
+            // Where it starts again it is in nobody's way, should somebody hear of it who does not know that it is
+            // gone.
+            self.block = self.charge_block;
+        }
         self.note_running();
         Ok(())
     }
@@ -187,7 +200,7 @@ impl RobotKnowledge {
                 }
                 warn!(context, "could not collect luggage {luggage} at {block}: gives up the job");
                 self.untold = self.job.map(|job| JobEnd { job, stage: LuggageStage::Refused });
-                self.lists.requests.refuse(luggage);
+                self.lists.requests.refuse(luggage, self.job.map(|job| job.from));
                 self.failures = 0;
                 self.drop_job();
             }

@@ -137,10 +137,6 @@ impl RobotKnowledge {
         }
         self.lists.gone.note(fault, header);
         self.lists.end_of(robot);
-        let stands = self.lists.peers.stop(robot, fault.block, fault.since.unwrap_or(header.sent));
-        if stands && self.policy == Policy::Safe && !self.lists.lost.contains(&robot) {
-            self.lists.lost.push(robot);
-        }
     }
 
     /// Forgets robots that are off the floor, after all that they said before has been heard.
@@ -178,6 +174,11 @@ impl RobotKnowledge {
         let Lists { peers, gone, .. } = lists;
         let sound = sound.filter(|(_, position)| !gone.contains(position.robot));
         peers.hear(sound.map(|(header, position)| (position, header.sent)));
+        for (robot, block, since) in gone.failed() {
+            if peers.stop(robot, block, since) && self.policy == Policy::Safe {
+                lists.lost.push(robot);
+            }
+        }
     }
 
     /// Handles the states of other robots.

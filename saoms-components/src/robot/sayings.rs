@@ -16,7 +16,7 @@ impl RobotKnowledge {
         let Some(JobEnd { job, stage }) = self.untold.take() else { return Ok(()) };
         context.send(&luggage, job.response(self.number, self.block, stage))?;
         if stage == LuggageStage::Refused {
-            self.lists.requests.refuse(job.luggage);
+            self.lists.requests.refuse(job.luggage, Some(job.from));
             if self.visits || self.is_assigned {
                 // The master asks the others.
                 return Ok(());

@@ -94,7 +94,14 @@ impl RobotKnowledge {
         self.lists.is_doubted = false;
         // A broken robot stops its hardware for good, and says a last time what it has to say in the next execution.
         self.shut_down |= was_critical;
-        if self.variables.critical { self.stop_for_good(context) } else { Ok(()) }
+        if !self.variables.critical {
+            return Ok(());
+        }
+        self.stop_for_good(context)?;
+        if self.policy == Policy::Safe && self.hardware.is_retired() {
+            self.next = self.block;
+        }
+        Ok(())
     }
 
     /// Takes the hardware of a broken robot out of service, unless a loop did. Hardware that is busy is asked again.

@@ -46,3 +46,14 @@ fn robots_are_unknown_only_where_robots_say_that_they_are_there() {
     assert_eq!(call.validate(1, &mut validator, None), Err(Problem::Unknown { robot: 4 }));
     assert_eq!(taken.validate(2, &mut validator, None), Err(Problem::Foreign { robot: 3, speaker: 1 }));
 }
+
+#[test]
+fn luggage_that_a_broken_robot_has_at_its_destination_is_requested_from_there_by_robots_alone() {
+    let there = EventLuggage::request(1, Block::new(3, 10), Block::new(3, 10));
+    let mut validator = MessageValidator::default();
+    assert_eq!(list(50.0).validate(1, &mut validator, None), Ok(()));
+    assert_eq!(there.validate(1, &mut validator, None), Ok(()), "a healer leaves it to the others");
+    assert_eq!(there.clone().again_for(ROBOT).validate(2, &mut validator, None), Ok(()), "the master repeats it");
+    let refused = Err(Problem::There { block: Block::new(3, 10) });
+    assert_eq!(there.validate(2, &mut validator, None), refused, "nobody needs a robot for new luggage that is there");
+}

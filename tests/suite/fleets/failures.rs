@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use saoms_api::{Chance, Class, Component, Failure, Own, Saved};
+use saoms_components::robot::Robot;
 use saoms_testkit::{Fleet, Run};
 use serde_json::{Value, json};
 
@@ -34,6 +36,11 @@ fn component(id: &str, class: &str, more: &str) -> String {
 
 /// A fleet with these robots, each with more properties.
 fn fleet(site: Site, scenario: &str, robots: &[(&str, &str)]) -> Fleet {
+    fleet_with(site, "robots", scenario, robots)
+}
+
+/// The same with a master that assigns luggage in this way.
+fn fleet_with(site: Site, assignment: &str, scenario: &str, robots: &[(&str, &str)]) -> Fleet {
     let world = if site.has_world { r#"<reference name="world" target="World"/>"# } else { "" };
     let mut components = String::new();
     if site.has_world {
@@ -43,12 +50,16 @@ fn fleet(site: Site, scenario: &str, robots: &[(&str, &str)]) -> Fleet {
     if site.has_zone {
         components += &component("Zone", "Zone", world);
     }
-    components += &component("Master", "MasterEnvironment", "");
+    components += &component("Master", "MasterEnvironment", &property("assignment", assignment));
     components += &component("MasterRobot", "MasterRobot", "");
     components += &component("Environment", "Environment", &property("scenario", scenario));
     for (robot, more) in robots {
         components += &component(robot, "Robot", &[world, more, &property("discharge", "0.1")].concat());
     }
+    composite(&components)
+}
+
+fn composite(components: &str) -> Fleet {
     Fleet::of_text(format!(
         r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
 {components}</composite>"#
@@ -194,4 +205,136 @@ fn a_run_without_its_master_or_world_ends_and_says_what_it_waits_for() {
         MasterRobot at 10: Failed: 3 of 3 delivered, 0 given up, 0 collisions
           component `MasterRobot` failed: this execution fails by fault injection
     "#]].assert_eq(&ends);
+}
+
+#[test]
+fn a_robot_is_stopped_since_it_is_late() {
+    let expected = "Failed: 3 of 3 delivered, 0 given up, 0 collisions";
+    let robots = [TEAM[0], ("Robot2", r#"<property name="overrun">stop</property>"#), TEAM[2]];
+    expect_ends(&SITES, &robots, (4..60).step_by(11), expected, |tenths| format!("{} for 3s stall Robot2", at(tenths)));
+}
+
+#[test]
+fn a_robot_breaks_while_it_hangs() {
+    let expected = "Done: 3 of 3 delivered, 0 given up, 0 collisions";
+    let both = |tenths: u64| format!("{} for 1700ms stall Robot2; {} breakdown 2", at(tenths), at(tenths + 4));
+    expect_ends(&SITES[..2], &TEAM, (4..40).step_by(3), expected, both);
+}
+
+#[test]
+fn a_sleeping_robot_is_woken_for_what_the_only_one_awake_leaves() {
+    let expected = "Failed: 3 of 3 delivered, 0 given up, 0 collisions";
+    let robots = [TEAM[0], ("Robot2", r#"<property name="asleep">true</property>"#)];
+    expect_ends(&SITES, &robots, (5..60).step_by(8), expected, |tenths| format!("{} fail Robot1", at(tenths)));
+}
+
+#[test]
+fn a_robot_that_refused_luggage_brings_it_from_where_its_carrier_stopped() {
+    let at = |x: &str| property("chargeX", x) + &property("chargeY", "1");
+    let robots =
+        [("Robot1", at("0") + &property("discharge", "1.5")), ("Robot2", at("20") + &property("discharge", "0.2"))];
+    for fault in ["breakdown 2", "crash Robot2"] {
+        let map = format!("{0}&#10;{0}&#10;{0}", ".".repeat(45));
+        let scenario = format!("at 0.5s luggage (40,0) to (2,0); at 6.2s {fault}; at 9s end");
+        let mut components = component("World", "World", &property("map", &map));
+        components += &component("Master", "MasterEnvironment", "");
+        components += &component("Environment", "Environment", &property("scenario", &scenario));
+        for (robot, more) in &robots {
+            components +=
+                &component(robot, "Robot", &(r#"<reference name="world" target="World"/>"#.to_owned() + more));
+        }
+        let run = composite(&components).run(1, LIMIT);
+        assert!(run.log().contains("Robot1: cannot carry luggage 1 from (40,0)"), "{}", run.log());
+        assert_eq!(outcome(&run), "Done: 1 of 1 delivered, 0 given up, 0 collisions", "{fault}: {}", run.log());
+    }
+}
+
+/// A robot whose saved state cannot be read.
+#[derive(Class)]
+#[class(name = "test.Forgetful", periodic, saves)]
+struct Forgetful {
+    #[extends]
+    robot: Robot,
+}
+
+impl Component for Forgetful {
+    type Properties = Own<Self>;
+
+    fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
+        Err(Failure::new("this version cannot read it"))
+    }
+}
+
+#[test]
+fn a_robot_whose_saved_state_cannot_be_read_begins_anew() {
+    for tenths in (4..60).step_by(5) {
+        let restart = property("restart", "onFailure");
+        let mut components = component("World", "World", &property("moveTime", "150ms"));
+        components += &component("Master", "MasterEnvironment", "");
+        let scenario = format!("{THREE} {} fail Robot2; at 15s end", at(tenths));
+        components += &component("Environment", "Environment", &property("scenario", &scenario));
+        let robot = r#"<reference name="world" target="World"/>"#.to_owned() + &property("discharge", "0.1") + &restart;
+        components += &component("Robot1", "Robot", &robot);
+        components += &component("Robot2", "Robot", &robot).replace("saoms.Robot", "test.Forgetful");
+        let run = composite(&components).run(tenths, LIMIT);
+        let context = format!("{tenths}: {}", run.log());
+        assert_eq!(outcome(&run), "Done: 3 of 3 delivered, 0 given up, 0 collisions", "{context}");
+        assert!(context.contains("could not continue with its saved state: this version cannot read it"), "{context}");
+    }
+}
+
+/// Faults of a run with this seed, and whether a robot is left that none of them concerns for good.
+fn drawn(seed: u64, robots: u32, has_zone: bool) -> (String, bool) {
+    let mut chance = Chance::new(seed);
+    let mut lines = String::new();
+    let mut out = std::collections::BTreeSet::new();
+    for _ in 0..=chance.below(4) {
+        let (time, robot) = (5 + chance.below(120), 1 + chance.below(u64::from(robots)));
+        let pause = 10 + chance.below(3000);
+        let (fault, is_lasting) = match chance.below(5) {
+            0 => (format!("fail Robot{robot}"), true),
+            1 => (format!("crash Robot{robot}"), true),
+            2 => (format!("breakdown {robot}"), true),
+            3 => (format!("crash Robot{robot} restart {pause}ms"), false),
+            _ => (format!("for {pause}ms stall Robot{robot}"), false),
+        };
+        if is_lasting {
+            out.insert(robot);
+        }
+        lines += &format!("{} {fault}; ", at(time));
+    }
+    // Without a zone robots may collide if messages are late (S5024).
+    if has_zone && chance.below(2) == 0 {
+        let (rate, delay) = (chance.below(30), 10 + chance.below(70));
+        lines += &format!("at 1s for 20s lose {rate} %; at 1s for 20s delay 10ms to {delay}ms; ");
+    }
+    (lines, out.len() < robots as usize)
+}
+
+#[test]
+fn whatever_fails_no_luggage_is_lost() {
+    let seeds = if std::env::var_os("SAOMS_THOROUGH").is_some() { 0..300 } else { 0..30 };
+    let mut wrong = String::new();
+    for seed in seeds {
+        let site = SITES[(seed % 2) as usize];
+        let (faults, is_one_left) = drawn(seed, 4, site.has_zone);
+        let scenario =
+            format!("from 0.5s every 0.5s..2s 10 times luggage (1,1)..(8,8) to (1,1)..(8,8); {faults} at 40s end");
+        let saves = r#"<property name="restart">onFailure</property><property name="restartLimit">1</property>"#;
+        let robots = [("Robot1", ""), ("Robot2", saves), ("Robot3", ""), ("Robot4", saves)];
+        let assignment = ["robots", "oldest", "optimal"][(seed / 2 % 3) as usize];
+        let fleet = fleet_with(site, assignment, &scenario, &robots);
+        let run = fleet.run(seed, LIMIT);
+        let violations = fleet.violations(seed, LIMIT);
+        let (delivered, given_up) = (luggage(&run, "delivered"), luggage(&run, "given_up"));
+        let is_all = delivered + given_up == luggage(&run, "requested") && (given_up == 0 || !is_one_left);
+        if !is_all || run.time_s > 600.0 || !violations.is_empty() {
+            wrong += &format!(
+                "seed {seed}, {site:?}, {assignment}: {faults}{}, {} s {violations}\n",
+                outcome(&run),
+                run.time_s
+            );
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
 }

@@ -19,6 +19,8 @@ struct Newest {
     sent: Time,
     /// The period in which it arrived.
     period: u64,
+    /// True if the robot failed since.
+    stopped: bool,
 }
 
 impl Peers {
@@ -31,7 +33,7 @@ impl Peers {
     pub fn hear<'a>(&mut self, positions: impl Iterator<Item = (&'a Position, Time)>) {
         self.period += 1;
         for (position, sent) in positions.filter(|(position, _)| position.robot != self.number) {
-            let newest = Newest { position: position.clone(), sent, period: self.period };
+            let newest = Newest { position: position.clone(), sent, period: self.period, stopped: false };
             match self.place(position.robot) {
                 Ok(place) => self.newest[place] = newest,
                 Err(place) => self.newest.insert(place, newest),
@@ -40,23 +42,16 @@ impl Peers {
     }
 
     /// A robot failed at a time, and stands on its block, which is this one if that is known: otherwise it is on one of
-    /// those that it held. False if it said later where it is.
+    /// those that it held and wanted. True if that is news: it did not say later where it is.
     pub(in crate::robot) fn stop(&mut self, robot: u32, block: Option<Block>, since: Time) -> bool {
-        let known = self.place(robot);
-        match (known, block) {
-            (Ok(place), _) if self.newest[place].sent > since => return false,
-            (Ok(place), block) => {
-                let position = &mut self.newest[place].position;
-                position.priority = IMMOVABLE;
-                if let Some(block) = block {
-                    (position.block, position.next, position.wanted) = (block, block, block);
-                }
-            }
-            (Err(place), Some(block)) => {
-                let position = Position { robot, block, next: block, wanted: block, priority: IMMOVABLE };
-                self.newest.insert(place, Newest { position, sent: since, period: self.period });
-            }
-            (Err(_), None) => return false,
+        let newest = self.place(robot).ok().and_then(|place| self.newest.get_mut(place));
+        let Some(Newest { position, sent, stopped, .. }) = newest else { return false };
+        if *sent > since || std::mem::replace(stopped, true) {
+            return false;
+        }
+        position.priority = IMMOVABLE;
+        if let Some(block) = block {
+            (position.block, position.next, position.wanted) = (block, block, block);
         }
         true
     }

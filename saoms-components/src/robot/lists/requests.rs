@@ -82,8 +82,8 @@ pub struct Requests {
     open: Vec<Request>,
     /// The request that this robot took an interest in; it is not on the list.
     claimed: Option<Request>,
-    /// Luggage that this robot leaves to other robots for good.
-    refused: Vec<u32>,
+    /// Luggage that this robot leaves to other robots for good, as long as it is where it was.
+    refused: Vec<Refused>,
     /// Luggage that other robots refused, with the robot.
     refusals: BTreeSet<(u32, u32)>,
     /// Visits that are not done, without those of other robots alone.
@@ -113,11 +113,18 @@ pub struct Assigned {
 pub(in crate::robot) struct RequestsMemory {
     open: Vec<Request>,
     claimed: Option<Request>,
-    refused: Vec<u32>,
+    refused: Vec<Refused>,
     refusals: Vec<Refusal>,
     visits: Vec<Visit>,
     settled: Numbers,
     assigned: Vec<Assigned>,
+}
+
+/// Luggage that this robot refused, and where it was; none where that is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
+struct Refused {
+    luggage: u32,
+    from: Option<Block>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -245,7 +252,7 @@ impl Requests {
         match event.stage {
             // A robot also refuses the job of a broken robot, which may wait as luggage later.
             LuggageStage::Refused if self.open.iter().any(|open| open.job.luggage == event.luggage) => {
-                self.refuse(event.luggage);
+                self.refuse(event.luggage, Some(event.from));
             }
             LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp => {
                 self.open.retain(|open| open.job.luggage != event.luggage);
@@ -259,8 +266,13 @@ impl Requests {
         if !event.is_request_for(self.number) || is_again && self.settled.contains(event.luggage) {
             return;
         }
+        if !is_again {
+            // From where it is now, it may be in reach.
+            let is_elsewhere = |refused: &Refused| refused.from.is_some_and(|from| from != event.from);
+            self.refused.retain(|refused| refused.luggage != event.luggage || !is_elsewhere(refused));
+        }
         let mut known = self.open.iter().chain(&self.claimed);
-        let refused = self.refused.contains(&event.luggage);
+        let refused = self.refused.iter().any(|refused| refused.luggage == event.luggage);
         if !refused && !known.any(|request| request.job.luggage == event.luggage) {
             let job = Job { luggage: event.luggage, from: event.from, to: event.to };
             let mut request = Request {
@@ -353,11 +365,10 @@ impl Requests {
         self.open.iter_mut().for_each(|request| request.needs = 0);
     }
 
-    /// Refuses luggage for good.
-    pub fn refuse(&mut self, luggage: u32) {
+    /// Refuses luggage for good, or until it is requested from another block than this one.
+    pub fn refuse(&mut self, luggage: u32, from: Option<Block>) {
         self.open.retain(|open| open.job.luggage != luggage);
-        if !self.refused.contains(&luggage) {
-            self.refused.push(luggage);
-        }
+        self.refused.retain(|refused| refused.luggage != luggage);
+        self.refused.push(Refused { luggage, from });
     }
 }

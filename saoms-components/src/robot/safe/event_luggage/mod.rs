@@ -179,7 +179,7 @@ impl Loop for SafeEventLuggage {
                 return Ok(());
             }
             SafeLuggageDecision::Refuse { job, why } => {
-                knowledge.lists.requests.refuse(job.luggage);
+                knowledge.lists.requests.refuse(job.luggage, Some(job.from));
                 if !knowledge.loaded {
                     self.warn(&job, why, knowledge, context);
                 }
