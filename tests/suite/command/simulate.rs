@@ -75,7 +75,8 @@ fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
 fn a_storm_harms_no_fleet_with_zones() {
     let folder = empty_folder("simulate-storm");
     let composite = root().join("composites/storm.composite");
-    let arguments = ["--seeds", "200", "--report", "json"];
+    let faults = root().join("composites/storm.txt");
+    let arguments = ["--faults", faults.to_str().unwrap(), "--seeds", "200", "--report", "json"];
     let (code, told, progress) = simulate_file(&folder, composite.to_str().unwrap(), &arguments);
     assert_eq!(code, Some(0), "{told}{progress}");
     let report: Value = serde_json::from_str(&told).unwrap();
