@@ -4,7 +4,7 @@ use saoms_api::{Context, Failure, Field};
 
 use super::{Environment, MAX_EVENTS};
 use crate::grid::Block;
-use crate::messages::{EventLuggage, Visit};
+use crate::messages::{EventLuggage, VISIT, Visit};
 
 /// Luggage or a visit that is published and not done yet.
 #[derive(Clone, Debug, Field)]
@@ -36,7 +36,12 @@ impl Environment {
     /// Publishes luggage and visits again that nobody passed on.
     pub(super) fn publish_again(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let execution = context.execution();
-        let due = self.open.iter_mut().filter(|(_, job)| !job.passed_on && job.again <= execution);
+        let is_due = |job: &OpenJob| !job.passed_on && job.again <= execution;
+        // Masters pass visits on, too. Without one that was ever scheduled, nobody can have lost anything.
+        if !self.open.values().any(is_due) || !context.publishers(&VISIT).iter().any(|master| master.has_begun) {
+            return Ok(());
+        }
+        let due = self.open.iter_mut().filter(|(_, job)| is_due(job));
         for (number, job) in due.take(MAX_EVENTS) {
             job.again = execution + job.pause;
             job.pause = job.pause.saturating_mul(2);
