@@ -1,6 +1,7 @@
 //! The run of an [`Assembly`](saoms_lang::assembly::Assembly): plugins, the plan, the bus, the scheduler, the journal
 //! and the report.
 
+pub mod adaptation;
 pub mod assemble;
 pub mod bus;
 pub mod fault;

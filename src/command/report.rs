@@ -28,11 +28,12 @@ pub(crate) struct ReportArguments {
 }
 
 /// What the report of a run holds beside, by the names of its fields: only the program knew it.
-const UNKNOWN: [&str; 7] = [
+const UNKNOWN: [&str; 8] = [
     "periods",
     "components: class, executions, missed, late_us, deadline_misses, slow, restarts, replaced, failures, dropped, messages",
     "the sections of components",
     "journal.loops: without_effect",
+    "adaptation",
     "votes and standstill",
     "outcome.status",
     "trace_hash",

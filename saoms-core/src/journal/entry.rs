@@ -26,12 +26,14 @@ pub(super) enum Content {
     Noted(Record),
     /// As read from a file.
     Read { id: String, text: String, values: Map<String, Value> },
-    /// A message from outside.
-    Outside { text: String },
+    /// A message from outside, or a notice of the engine.
+    Outside { id: &'static str, text: String },
 }
 
 /// The id of all records of messages from outside.
-const FROM_OUTSIDE: &str = "message_from_outside";
+pub(crate) const FROM_OUTSIDE: &str = "message_from_outside";
+/// The id of all records of components that failed and lost what they knew.
+pub(crate) const COMPONENT_FAILED: &str = "component_failed";
 
 /// A change of what a component knows.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +48,12 @@ pub struct Change {
 
 impl JournalEntry {
     /// A symptom from outside the fleet.
-    pub(crate) fn from_outside(id: Cause, time: Time, source: &str, text: String) -> JournalEntry {
+    pub(crate) fn from_outside(
+        id: Cause,
+        time: Time,
+        source: &str,
+        (record, text): (&'static str, String),
+    ) -> JournalEntry {
         JournalEntry {
             id,
             time,
@@ -55,7 +62,7 @@ impl JournalEntry {
             phase: Phase::Symptom,
             cause: Cause::default(),
             change: false,
-            what: Content::Outside { text },
+            what: Content::Outside { id: record, text },
         }
     }
 
@@ -96,7 +103,7 @@ impl JournalEntry {
         match &self.what {
             Content::Noted(record) => record.id(),
             Content::Read { id, .. } => id,
-            Content::Outside { .. } => FROM_OUTSIDE,
+            Content::Outside { id, .. } => id,
         }
     }
 
@@ -104,7 +111,7 @@ impl JournalEntry {
     pub fn text(&self) -> String {
         match &self.what {
             Content::Noted(record) => record.to_string(),
-            Content::Read { text, .. } | Content::Outside { text } => text.clone(),
+            Content::Read { text, .. } | Content::Outside { text, .. } => text.clone(),
         }
     }
 
@@ -115,6 +122,23 @@ impl JournalEntry {
             Content::Read { values, .. } => values.get(name).cloned(),
             Content::Outside { .. } => None,
         }
+    }
+
+    /// True if it is what came from outside the fleet.
+    pub(crate) fn is_from_outside(&self) -> bool {
+        self.record_id() == FROM_OUTSIDE
+    }
+
+    /// True if it is a change of an entry of the knowledge that is yes or no.
+    pub(crate) fn is_switch(&self) -> bool {
+        self.change
+            && match &self.what {
+                Content::Noted(record) => {
+                    record.values().any(|(name, value)| name == "before" && matches!(value, saoms_api::Value::Bool(_)))
+                }
+                Content::Read { values, .. } => values.get("before").is_some_and(Value::is_boolean),
+                Content::Outside { .. } => false,
+            }
     }
 
     /// All values by name.
@@ -157,7 +181,7 @@ impl fmt::Display for JournalEntry {
         write!(formatter, "{time} {component} {by} {phase}: ")?;
         match &self.what {
             Content::Noted(record) => record.fmt(formatter),
-            Content::Read { text, .. } | Content::Outside { text } => formatter.write_str(text),
+            Content::Read { text, .. } | Content::Outside { text, .. } => formatter.write_str(text),
         }
     }
 }

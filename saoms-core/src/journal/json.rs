@@ -46,7 +46,7 @@ impl Serialize for Text<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.0 {
             Content::Noted(record) => serializer.collect_str(record),
-            Content::Read { text, .. } | Content::Outside { text } => serializer.serialize_str(text),
+            Content::Read { text, .. } | Content::Outside { text, .. } => serializer.serialize_str(text),
         }
     }
 }
@@ -180,7 +180,7 @@ impl Serialize for Journal {
 }
 
 /// Writes each value on one line, even in indented JSON.
-fn in_lines<T: Serialize, E: serde::ser::Error>(values: &[T]) -> Result<Vec<Box<RawValue>>, E> {
+pub(crate) fn in_lines<T: Serialize, E: serde::ser::Error>(values: &[T]) -> Result<Vec<Box<RawValue>>, E> {
     values.iter().map(|value| to_raw_value(value).map_err(E::custom)).collect()
 }
 

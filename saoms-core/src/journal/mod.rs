@@ -22,10 +22,12 @@ mod tests;
 mod why;
 
 pub(crate) use batch::Head;
+pub(crate) use entry::{COMPONENT_FAILED, FROM_OUTSIDE};
 pub use entry::{Change, JournalEntry};
 pub use excerpt::LiveJournal;
 pub(crate) use excerpt::Pieces;
 pub use find::find;
+pub(crate) use json::in_lines;
 pub use kept::{Journal, LoopCounts};
 pub(crate) use outside::OutsideRing;
 pub(crate) use queue::RecordQueue;

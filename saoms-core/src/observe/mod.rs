@@ -5,6 +5,7 @@
 //! Events and messages are put into a queue while the fleet runs, and delivered by a thread of their own; so are
 //! records, by a second queue and thread.
 
+mod adaptation;
 mod event;
 mod invariants;
 mod journal_file;
@@ -15,6 +16,7 @@ mod rotation;
 #[cfg(test)]
 mod tests;
 
+pub use adaptation::AdaptationWatch;
 pub use event::{Occurrence, RunEvent, RunProgress, SentMessage};
 pub use invariants::InvariantWatch;
 pub use journal_file::JournalFile;

@@ -60,6 +60,11 @@ pub trait Observer: Send + Sync + 'static {
         Ok(())
     }
 
+    /// The run has ended: adds to its report what the observer found, before any observer gets it.
+    fn conclude(&self, report: &mut RunReport) {
+        let _ = report;
+    }
+
     /// The run has ended, and all events before have been delivered. Called by the thread that waited for the end.
     fn end(&self, report: &RunReport) {
         let _ = report;
@@ -134,7 +139,11 @@ impl Observers {
         self.all.iter().try_for_each(|(observer, _)| observer.begin(beginning))
     }
 
-    pub(crate) fn end(&self, report: &RunReport) {
+    pub(crate) fn end(&self, report: &mut RunReport) {
+        for (observer, _) in &self.all {
+            contained(|| observer.conclude(report));
+        }
+        let report = &*report;
         for (observer, _) in &self.all {
             contained(|| observer.end(report));
         }

@@ -2,6 +2,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{LatenessSummary, Standstill};
+use crate::adaptation::AdaptationReport;
 use crate::journal::Journal;
 
 /// The report of a run, as `saoms run --report` writes it.
@@ -23,6 +24,9 @@ pub struct RunReport {
     /// Symptoms, decisions and effects of the loops.
     #[serde(default)]
     pub journal: Journal,
+    /// What came of the events of the run; `None` where it was not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<AdaptationReport>,
     /// Votes of the components about the work that is left.
     pub votes: Votes,
     /// The standstill of the run, if there was one: nothing happened for a long time, although work was left.
@@ -36,10 +40,10 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// The same report without the records of the journal, whose counts stay.
+    /// The same report without the records of the journal and the list of events, whose counts stay.
     #[must_use]
     pub fn without_records(&self) -> RunReport {
-        let RunReport { seed, time_s, periods, sections, components, journal, .. } = self;
+        let RunReport { seed, time_s, periods, sections, components, journal, adaptation, .. } = self;
         RunReport {
             seed: *seed,
             time_s: *time_s,
@@ -47,6 +51,7 @@ impl RunReport {
             sections: sections.clone(),
             components: components.clone(),
             journal: journal.without_records(),
+            adaptation: adaptation.as_ref().map(AdaptationReport::without_events),
             votes: self.votes.clone(),
             standstill: self.standstill.clone(),
             outcome: self.outcome.clone(),

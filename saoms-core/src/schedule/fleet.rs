@@ -143,9 +143,9 @@ impl RunningFleet {
         self.wait_for_hardware();
         self.finish_journal();
         let shared = &self.handle.shared;
-        let report = shared.lock().report(&shared.sections());
+        let mut report = shared.lock().report(&shared.sections());
         self.finish();
-        self.handle.shared.observers.end(&report);
+        self.handle.shared.observers.end(&mut report);
         report
     }
 

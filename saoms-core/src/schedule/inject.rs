@@ -18,7 +18,7 @@ use super::speakers::ForeignSpeaker;
 use super::takers::{EventMessage, RaiseError};
 use crate::bus::{Bus, TopicId};
 use crate::fault::TimedFault;
-use crate::journal::JournalEntry;
+use crate::journal::{FROM_OUTSIDE, JournalEntry};
 use crate::observe::{Notification, Occurrence, SentMessage};
 
 /// The number of the sender of messages from outside.
@@ -413,9 +413,14 @@ impl Engine {
 
     /// Writes an event to the journal, as the root of what follows from it.
     pub(super) fn record_outside(&mut self, time: u64, by: &str, text: String) -> Cause {
+        self.record_root(time, by, (FROM_OUTSIDE, text))
+    }
+
+    /// The same with the id of the record.
+    pub(super) fn record_root(&mut self, time: u64, by: &str, what: (&'static str, String)) -> Cause {
         // Components draw the numbers of their records from the same counter.
         let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
-        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), by, text);
+        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), by, what);
         if let Some(records) = &self.records {
             records.put_outside(entry.clone());
         }

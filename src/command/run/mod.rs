@@ -26,7 +26,7 @@ use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_control::AlertList;
-use saoms_core::observe::{InvariantWatch, Observer};
+use saoms_core::observe::{AdaptationWatch, InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings, Speed};
 use saoms_lang::assembly::Assembly;
@@ -262,6 +262,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let report = report.map(|output| Arc::new(ReportFile { output, is_short: arguments.short_report }));
     let picture = picture.zip(paths);
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths, &assembly)));
+    // Nobody else asks for it, and it takes all records of the journal.
+    let adaptation = report.is_some().then(|| Arc::new(AdaptationWatch::of(&assembly)));
     // At the end, they write in this order.
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, style))];
     observers.extend(log.map(|log| Arc::new(log) as Arc<dyn Observer>));
@@ -269,6 +271,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     observers.push(Arc::clone(&alerts) as Arc<dyn Observer>);
+    observers.extend(adaptation.map(|watch| watch as Arc<dyn Observer>));
     let watch = arguments.invariants.then(|| Arc::new(InvariantWatch::default()));
     observers.extend(watch.clone().map(|watch| watch as Arc<dyn Observer>));
     let mut notes = Vec::new();

@@ -18,6 +18,9 @@ pub(crate) fn summary(report: &RunReport, keeps_all: bool) -> String {
     let mut text = format!("\n{}\n", ending(report));
     text.push_str(&table(&report.components));
     text.push_str(&problem_lines(&report.components));
+    if let Some(adaptation) = report.adaptation.as_ref().filter(|adaptation| !adaptation.kinds.is_empty()) {
+        let _ = write!(text, "\n{adaptation}");
+    }
     text.push_str(&journal(&report.journal, keeps_all));
     if let Some(hash) = &report.trace_hash {
         let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
@@ -64,7 +67,8 @@ fn journal(journal: &Journal, keeps_all: bool) -> String {
         );
     }
     if journal.lost > 0 {
-        let _ = writeln!(text, "\njournal: {} of {} records are not in the file", journal.lost, journal.records);
+        let from = if keeps_all { "in the file" } else { "measured" };
+        let _ = writeln!(text, "\njournal: {} of {} records are not {from}", journal.lost, journal.records);
     }
     text
 }

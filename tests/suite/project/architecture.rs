@@ -28,7 +28,10 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
     (
         "saoms-core/src",
         "crate::",
-        &["hash", "plugin", "assemble", "bus", "journal", "report", "status", "observe", "fault", "schedule"],
+        &[
+            "hash", "plugin", "assemble", "bus", "journal", "adaptation", "report", "status", "observe", "fault",
+            "schedule",
+        ],
     ),
 ];
 

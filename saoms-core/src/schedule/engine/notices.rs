@@ -6,6 +6,7 @@ use saoms_lang::assembly::ComponentSpec;
 
 use super::{Engine, RunPhase};
 use crate::bus::TopicId;
+use crate::journal::COMPONENT_FAILED;
 
 impl Engine {
     /// Tells the site of a component that it failed and lost what it knew. One that never executed had nothing.
@@ -30,7 +31,7 @@ impl Engine {
             }
             let name = std::sync::Arc::clone(&slot.name);
             let (bytes, text) = (notice.message)(outage);
-            let cause = self.record_outside(now, &name, text);
+            let cause = self.record_root(now, &name, (COMPONENT_FAILED, text));
             self.standstill.note_effect(now);
             for topic in topics {
                 self.deliver_injection(now, cause, topic, (bytes.clone(), None, None), None);

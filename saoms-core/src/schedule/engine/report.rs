@@ -22,6 +22,7 @@ impl Engine {
             sections: sections.to_json(),
             components: self.components(),
             journal: self.journal(),
+            adaptation: None,
             votes: self.votes_report(),
             standstill: self.standstill.told.clone(),
             outcome: self.outcome(),

@@ -1,0 +1,65 @@
+//! Adaptation measured, as users see it.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{empty_folder, project, saoms, saoms_in, stdout, text};
+
+/// The lines of a table, from the one that begins with `event` to an empty one.
+fn table(output: &str) -> String {
+    let lines = output.lines().skip_while(|line| !line.starts_with("event ")).take_while(|line| !line.is_empty());
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn the_page_shows_the_table_of_the_airport() {
+    let folder = empty_folder("adaptation-airport");
+    let report = folder.join("report.json");
+    let run = ["run", "composites/airport.composite", "--virtual", "--report", report.to_str().unwrap()];
+    let table = table(&stdout(&saoms(&run)));
+    let page = project("docs/adaptation.md");
+    assert!(!table.is_empty() && page.contains(&table), "{table}");
+    let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
+    let kinds = report["adaptation"]["kinds"].as_array().unwrap();
+    let breakdown = kinds.iter().find(|kind| kind["kind"] == "robot_breaks_down").unwrap();
+    assert_eq!(breakdown["settle_s"]["p50"], 1.82, "{breakdown}");
+    assert_eq!(report["adaptation"]["events"].as_array().unwrap().len(), 25);
+}
+
+#[test]
+fn nothing_is_measured_where_nobody_asks() {
+    let output = stdout(&saoms(&["run", "composites/airport.composite", "--virtual"]));
+    assert_eq!(table(&output), "", "{output}");
+}
+
+#[test]
+fn a_landing_without_work_wakes_robots_needlessly() {
+    let folder = empty_folder("adaptation-landing");
+    let airport = project("composites/airport.composite");
+    let (before, rest) = airport.split_once("at 1s landing 8").unwrap();
+    let (_, after) = rest.split_once("at 2s breakdown Robot001").unwrap();
+    let scenario = "at 1s landing 12
+      then 300ms every 200ms 2 times luggage (7,0)..(10,10) to (1,0)..(4,10)";
+    fs::write(folder.join("idle.composite"), format!("{before}{scenario}{after}")).unwrap();
+    let output = saoms_in(&folder, &["run", "idle.composite", "--virtual", "--report", "report.json"]);
+    let table = table(&text(&output));
+    let landing = table.lines().find(|line| line.starts_with("airplane_lands ")).unwrap_or_default();
+    assert_eq!(landing.split_whitespace().last(), Some("4"), "{table}");
+}
+
+#[test]
+fn faults_of_messages_and_components_are_events() {
+    let folder = empty_folder("adaptation-faults");
+    fs::write(folder.join("airport.composite"), project("composites/airport.composite")).unwrap();
+    let faults = "at 1s for 2s lose 20 % on RLMSTOPIC\nat 2s crash Robot004 restart 1s\n";
+    fs::write(folder.join("faults.txt"), faults).unwrap();
+    let run = ["run", "airport.composite", "--virtual", "--faults", "faults.txt", "--short-report"];
+    let output = saoms_in(&folder, &[&run[..], &["--report", "report.json"]].concat());
+    let table = table(&text(&output));
+    for kind in ["component_failed ", "crash ", "lose "] {
+        assert!(table.lines().any(|line| line.starts_with(kind)), "{kind}: {table}");
+    }
+    let report: Value = serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["adaptation"]["events"], serde_json::json!([]), "it is short");
+}
