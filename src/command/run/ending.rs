@@ -233,7 +233,8 @@ fn end_now(exit: Exit) -> ! {
     guard::exit(exit as i32)
 }
 
-fn is_ignored(signal: i32) -> bool {
+/// True if the process was started so that it ignores the signal.
+pub(in crate::command) fn is_ignored(signal: i32) -> bool {
     let mut action = MaybeUninit::<libc::sigaction>::uninit();
     // SAFETY: no new action is given, and the present one is written to where there is room for it.
     let is_known = unsafe { libc::sigaction(signal, ptr::null(), action.as_mut_ptr()) } == 0;

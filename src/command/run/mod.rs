@@ -41,6 +41,7 @@ use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint
 use alerts::AlertDelivery;
 use console::Console;
 use control::{Control, NetworkArguments};
+pub(super) use ending::is_ignored;
 use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers, Unreadable};
 use faults::{FaultScript, Known, report_wrong};

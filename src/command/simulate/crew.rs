@@ -3,12 +3,13 @@
 use std::env;
 use std::io::{self, BufRead, BufReader, IsTerminal, Write};
 use std::ops::RangeInclusive;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use super::SimulateArguments;
+use super::ending::{Shared, share, wait_for};
 use super::one::{SeedResult, Simulation};
 use crate::output::{eprint, has_failed, print_json_line};
 
@@ -25,7 +26,7 @@ pub(super) fn work(simulation: &Simulation) {
 
 /// A process that runs seeds.
 struct Worker {
-    child: Child,
+    child: Shared,
     seeds: ChildStdin,
     results: BufReader<ChildStdout>,
 }
@@ -39,7 +40,7 @@ impl Worker {
         let missing = || io::Error::other("it has no pipe");
         let seeds = child.stdin.take().ok_or_else(missing)?;
         let results = BufReader::new(child.stdout.take().ok_or_else(missing)?);
-        Ok(Worker { child, seeds, results })
+        Ok(Worker { child: share(child), seeds, results })
     }
 
     /// Runs a seed; `None` if the process does not answer any more.
@@ -51,9 +52,9 @@ impl Worker {
     }
 
     /// Ends the process; gives how it ended.
-    fn end(mut self) -> String {
+    fn end(self) -> String {
         drop(self.seeds);
-        self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string())
+        wait_for(&self.child)
     }
 }
 

@@ -2,6 +2,7 @@
 //! components.
 
 mod crew;
+mod ending;
 mod one;
 mod shrink;
 mod table;
@@ -36,7 +37,7 @@ pub(crate) struct SimulateArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
 
-    /// The number of seeds, one run for each
+    /// The number of seeds, one run for each; the first one and each tenth after it run twice, for the same trace
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     pub(crate) seeds: u64,
 
@@ -75,6 +76,9 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> Exit {
     if arguments.fleet.files.iter().any(|path| path == Path::new(INPUT)) {
         eprint("error: several processes read the composites, which standard input cannot be\n  = help: name a file\n");
         return Exit::WrongInput;
+    }
+    if !arguments.worker {
+        ending::end_at_signals();
     }
     let simulation = match simulation(arguments) {
         Ok(simulation) => simulation,
@@ -122,5 +126,5 @@ fn simulation(arguments: &SimulateArguments) -> Result<Simulation, Exit> {
         report_wrong(&wrong);
         return Err(Exit::WrongInput);
     }
-    Ok(Simulation { assembly, known, script, limit: arguments.limit })
+    Ok(Simulation { assembly, known, script, limit: arguments.limit, first: arguments.first })
 }

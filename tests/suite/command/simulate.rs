@@ -1,11 +1,15 @@
 //! `saoms simulate`: many seeds, faults and invariants.
 
 use std::fs;
+use std::io::Read;
 use std::path::Path;
+use std::process::Stdio;
+use std::thread;
+use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::support::{empty_folder, root, saoms_in, stdout};
+use crate::support::{command, empty_folder, root, saoms_in, stdout};
 
 fn simulate(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
     let composite = root().join("composites/airport.composite");
@@ -105,4 +109,28 @@ fn wrong_input_starts_nothing() {
     assert_eq!(code, Some(2), "{why}");
     let output = saoms_in(&folder, &["simulate", "-"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn a_signal_ends_it_with_130_and_the_processes_of_its_seeds() {
+    for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGHUP] {
+        let arguments = ["simulate", "composites/storm.composite", "--seeds", "100000", "-j", "1"];
+        let mut child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // A process that runs seeds has the same standard error, which is closed once all have ended.
+        while threads_with_children(child.id()) == 0 {
+            thread::sleep(Duration::from_millis(5));
+        }
+        // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
+        assert_eq!(unsafe { libc::kill(i32::try_from(child.id()).unwrap(), signal) }, 0);
+        let mut told = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut told).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "signal {signal}: {told}");
+    }
+}
+
+/// Number of the threads of a process that have started others.
+fn threads_with_children(process: u32) -> usize {
+    let Ok(threads) = fs::read_dir(format!("/proc/{process}/task")) else { return 0 };
+    let children = threads.map(|thread| fs::read_to_string(thread.unwrap().path().join("children")));
+    children.filter(|all| all.as_ref().is_ok_and(|all| !all.trim().is_empty())).count()
 }
