@@ -5,6 +5,7 @@
 //!
 //! - [`RunSummary`]: the counts of a report and their meaning, in reports and on the console,
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
+//! - [`CurvesRegistration`]: figures of a run over time (`saoms run --timeline`), and which of them is its work,
 //! - [`InvariantsRegistration`]: what has to hold in each run, whatever is done to the fleet (`saoms simulate`),
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
@@ -12,6 +13,7 @@
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
+mod curves;
 mod events;
 mod failures;
 mod invariants;
@@ -22,6 +24,7 @@ mod summary;
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
+pub use curves::{Curve, CurvesRegistration, RunCurves};
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};
 pub use invariants::{InvariantsRegistration, Measure, RunInvariants, Violation};

@@ -4,6 +4,7 @@ use std::time::Duration;
 use saoms_api::event::fault::FaultCall;
 use saoms_api::host::Phase;
 
+use super::Samples;
 use super::event::Event;
 use super::known::{Known, KnownRecords, Origin};
 use super::names::Names;
@@ -176,8 +177,8 @@ impl Adaptations {
         *quiet_of.entry(component).or_insert_with(|| quiet.get(path).copied().unwrap_or(u64::MAX))
     }
 
-    /// What came of all events so far.
-    pub fn report(&self) -> AdaptationReport {
-        tables(self, &self.switches)
+    /// What came of all events of a run with these curves.
+    pub fn report(&self, samples: &Samples) -> AdaptationReport {
+        tables(self, &self.switches, samples)
     }
 }

@@ -12,12 +12,16 @@ mod known;
 mod measure;
 mod names;
 mod report;
+mod samples;
 mod spread;
 mod switches;
 #[cfg(test)]
 mod tests;
 mod text;
+mod throughput;
 
 pub use measure::Adaptations;
 pub use report::{AdaptationReport, KindReport, MeasuredEvent};
+pub use samples::Samples;
 pub use spread::Spread;
+pub use throughput::Throughput;

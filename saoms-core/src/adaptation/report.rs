@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::event::Event;
 use super::switches::Switches;
-use super::{Adaptations, Spread};
+use super::{Adaptations, Samples, Spread, Throughput};
 use crate::journal::in_lines;
 
 /// Events that a report lists at most; its table has all.
@@ -48,6 +48,10 @@ pub struct KindReport {
     pub lasting: usize,
     /// Components that adapted needlessly.
     pub needless: u64,
+    /// The throughput before and after; `None` of a loop's own events, if no component counts work, or if no event has
+    /// time on both sides.
+    #[serde(default)]
+    pub throughput: Option<Throughput>,
 }
 
 /// One event. Times are in seconds from the event.
@@ -59,6 +63,8 @@ pub struct MeasuredEvent {
     pub time_s: f64,
     /// As [`KindReport::kind`].
     pub kind: String,
+    /// As [`KindReport::own`].
+    pub own: bool,
     /// First symptom.
     pub detect_s: Option<f64>,
     /// First decision.
@@ -85,7 +91,7 @@ impl AdaptationReport {
 }
 
 /// The tables of all events.
-pub(super) fn tables(all: &Adaptations, switches: &Switches) -> AdaptationReport {
+pub(super) fn tables(all: &Adaptations, switches: &Switches, samples: &Samples) -> AdaptationReport {
     let lasting: HashSet<u32> = switches.lasting().collect();
     let kind = |event: &Event| all.kinds.get(event.kind as usize).map_or("", String::as_str);
     // Loops begin at much that leads to nothing.
@@ -112,12 +118,14 @@ pub(super) fn tables(all: &Adaptations, switches: &Switches) -> AdaptationReport
             overtaken: number(&|_, event| event.is_overtaken),
             lasting: number(&|place, _| lasting.contains(&place)),
             needless: events.iter().map(|(_, event)| u64::from(event.needless)).sum(),
+            throughput: Throughput::of(events.iter().filter(|_| !own).map(|(_, event)| event.at), samples),
         }
     });
     let events = counted.take(MOST_LISTED).map(|(_, event)| MeasuredEvent {
         id: event.id,
         time_s: event.at as f64 / 1e9,
         kind: kind(event).to_owned(),
+        own: event.is_own,
         detect_s: event.after(event.detected).filter(|_| !event.is_own),
         decide_s: event.after(event.decided),
         effect_s: event.after(event.acted),

@@ -14,9 +14,17 @@ fn times(spread: Option<Spread>) -> String {
     spread.map_or_else(|| "-".to_owned(), |spread| format!("{:.3}/{:.3}", spread.p50, spread.max))
 }
 
-/// The name of a kind; what a loop began by itself says so.
-fn name(kind: &KindReport) -> String {
-    format!("{}{}", one_line(&kind.kind), if kind.own { " (own)" } else { "" })
+/// How much less was finished after it than before, in percent, or a line.
+fn dip(kind: &KindReport) -> String {
+    let dip = kind.throughput.and_then(|throughput| throughput.dip_percent);
+    dip.map_or_else(|| "-".to_owned(), |dip| format!("{dip:.0}"))
+}
+
+/// The name of the kind; what a loop began by itself says so.
+impl fmt::Display for KindReport {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}{}", one_line(&self.kind), if self.own { " (own)" } else { "" })
+    }
 }
 
 /// A line for each kind of event, below a heading; nothing without events.
@@ -26,23 +34,33 @@ impl fmt::Display for AdaptationReport {
             return Ok(());
         }
         let shown = &self.kinds[..self.kinds.len().min(ROWS)];
-        let width = shown.iter().map(|kind| name(kind).chars().count()).max().unwrap_or(0).max("event".len());
+        let width = shown.iter().map(|kind| kind.to_string().chars().count()).max().unwrap_or(0).max("event".len());
         writeln!(
             formatter,
-            "{:width$}  {:>5}  {:>16}  {:>15}  {:>15}  {:>15}  {:>9}  {:>7}  {:>8}",
-            "event", "count", "detect s p50/max", "decide", "effect", "settle", "overtaken", "lasting", "needless"
+            "{:width$}  {:>5}  {:>16}  {:>15}  {:>15}  {:>15}  {:>9}  {:>7}  {:>8}  {:>6}",
+            "event",
+            "count",
+            "detect s p50/max",
+            "decide",
+            "effect",
+            "settle",
+            "overtaken",
+            "lasting",
+            "needless",
+            "dip %"
         )?;
         for kind in shown {
             let [detect, decide, effect, settle] =
                 [kind.detect_s, kind.decide_s, kind.effect_s, kind.settle_s].map(times);
             writeln!(
                 formatter,
-                "{:width$}  {:>5}  {detect:>16}  {decide:>15}  {effect:>15}  {settle:>15}  {:>9}  {:>7}  {:>8}",
-                name(kind),
+                "{:width$}  {:>5}  {detect:>16}  {decide:>15}  {effect:>15}  {settle:>15}  {:>9}  {:>7}  {:>8}  {:>6}",
+                kind.to_string(),
                 kind.count,
                 kind.overtaken,
                 kind.lasting,
-                kind.needless
+                kind.needless,
+                dip(kind)
             )?;
         }
         if self.kinds.len() > shown.len() {

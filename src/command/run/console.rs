@@ -45,7 +45,8 @@ impl Console {
             ConsoleStyle::Plain => Verbosity::Plain,
             ConsoleStyle::Classic => Verbosity::Classic,
         };
-        let outputs = [&arguments.report, &arguments.paths, &arguments.journal, &arguments.log.log];
+        let outputs =
+            [&arguments.report, &arguments.paths, &arguments.timeline, &arguments.journal, &arguments.log.log];
         let is_standard = |path: &PathBuf| Place::of(path).is_ok_and(|place| place.is_standard_output());
         let write = if outputs.into_iter().flatten().any(is_standard) { eprint } else { print };
         if verbosity == Verbosity::Classic {

@@ -15,6 +15,7 @@ mod reload;
 mod report_file;
 mod status_line;
 mod summary;
+mod timeline_file;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -52,6 +53,7 @@ use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
 use report_file::ReportFile;
+use timeline_file::TimelineFile;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -98,6 +100,11 @@ pub(crate) struct RunArguments {
     /// Draw the paths of the robots to this SVG file, one world below the other; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) paths: Option<PathBuf>,
+
+    /// Draw the run over time to this SVG file: finished and open work, the robots that are awake, their batteries, and
+    /// how the fleet adapted to each event; `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) timeline: Option<PathBuf>,
 
     /// Write all records of the journal to this file, as lines of JSON; the report has only the newest records of each
     /// component
@@ -248,7 +255,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     let style = LogStyle::of(&arguments.log, &assembly);
     let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
-    let RunFiles { report, picture, journal, log } = files_written;
+    let RunFiles { report, picture, timeline, journal, log } = files_written;
     let alerts: Arc<AlertList> = Arc::default();
     let mut delivery = match AlertDelivery::of(arguments, &assembly.run, &alerts) {
         Ok(delivery) => delivery,
@@ -258,19 +265,26 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let lost_lines = log.as_ref().map(LogFile::lost).unwrap_or_default();
     // With a file, somebody wants the whole run, seen or not.
     let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
-    let only_prints = journal.is_none() && log.is_none() && is_standard(&report) && is_standard(&picture);
-    let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some());
+    let only_prints = journal.is_none()
+        && log.is_none()
+        && is_standard(&report)
+        && [&picture, &timeline].into_iter().all(is_standard);
+    let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some() || timeline.is_some());
     let report = report.map(|output| Arc::new(ReportFile { output, is_short: arguments.short_report }));
     let picture = picture.zip(paths);
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths, &assembly)));
     // Nobody else asks for it, and it takes all records of the journal.
-    let adaptation = report.is_some().then(|| Arc::new(AdaptationWatch::of(&assembly)));
+    let is_measured = report.is_some() || timeline.is_some();
+    let adaptation = is_measured.then(|| Arc::new(AdaptationWatch::of(&assembly)));
+    let timeline = timeline.zip(adaptation.clone());
+    let timeline = timeline.map(|(output, watch)| Arc::new(TimelineFile { output, title: title(arguments), watch }));
     // At the end, they write in this order.
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, style))];
     observers.extend(log.map(|log| Arc::new(log) as Arc<dyn Observer>));
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
+    observers.extend(timeline.clone().map(|timeline| timeline as Arc<dyn Observer>));
     observers.push(Arc::clone(&alerts) as Arc<dyn Observer>);
     observers.extend(adaptation.map(|watch| watch as Arc<dyn Observer>));
     let watch = arguments.invariants.then(|| Arc::new(InvariantWatch::default()));
@@ -336,6 +350,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())
+        || timeline.is_some_and(|timeline| timeline.output.has_failed())
         || lost_lines.load(Ordering::Relaxed) > 0
     {
         return Exit::Failed;

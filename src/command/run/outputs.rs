@@ -15,6 +15,7 @@ use crate::output::{Asked, Outputs, Place, Sink, counted, displayed, eprint, mod
 pub(super) struct RunFiles {
     pub(super) report: Option<Output>,
     pub(super) picture: Option<Output>,
+    pub(super) timeline: Option<Output>,
     pub(super) journal: Option<JournalFile>,
     pub(super) log: Option<LogFile>,
 }
@@ -40,24 +41,27 @@ impl RunFiles {
         };
         let report = add("report", "--report", arguments.report.as_deref(), false);
         let picture = add("picture", "--paths", arguments.paths.as_deref(), false);
+        let timeline = add("timeline", "--timeline", arguments.timeline.as_deref(), false);
         let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
         let log = add("log", "--log", arguments.log.log.as_deref(), true);
         let rotation = arguments.log.rotation();
         let moved = [&journal, &log].into_iter().flatten().filter(|_| rotation.is_any());
         problems.extend(moved.filter_map(|(asked, place)| taken_aside(asked, place, rotation, &outputs)));
-        problems.extend(arguments.paths.as_deref().and_then(other_picture));
+        let pictures = [("--paths", &arguments.paths), ("--timeline", &arguments.timeline)];
+        problems.extend(pictures.into_iter().filter_map(|(option, path)| other_picture(option, path.as_deref()?)));
         if problems.is_empty() {
             // A pipe waits for its reader, so that it is opened when nothing else can be wrong.
             let mut told = |asked: Asked<'_>, error| problems.push(asked.unwritable(&error));
             let mut whole = |(asked, place)| Output::open(asked, place).map_err(|error| told(asked, error)).ok();
             let (report, picture) = (report.and_then(&mut whole), picture.and_then(&mut whole));
+            let timeline = timeline.and_then(&mut whole);
             let journal = journal
                 .and_then(|(asked, place)| grown(asked, place, rotation).map_err(|error| told(asked, error)).ok());
             let log = log.and_then(|(asked, place)| {
                 log_file(asked, place, rotation, style).map_err(|error| told(asked, error)).ok()
             });
             if problems.is_empty() {
-                return Some(RunFiles { report, picture, journal, log });
+                return Some(RunFiles { report, picture, timeline, journal, log });
             }
         }
         eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
@@ -81,12 +85,12 @@ const PICTURES: [&str; 13] =
     ["png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps", "svgz", "ico"];
 
 /// The message about a file whose ending is that of another kind of picture.
-fn other_picture(path: &Path) -> Option<String> {
+fn other_picture(option: &str, path: &Path) -> Option<String> {
     let ending = path.extension()?.to_str()?;
     let is_other = PICTURES.iter().any(|known| ending.eq_ignore_ascii_case(known));
     is_other.then(|| {
         format!(
-            "error: the picture of `--paths` is in SVG, but `{}` ends with `.{ending}`\n  = help: write `{}`\n",
+            "error: the picture of `{option}` is in SVG, but `{}` ends with `.{ending}`\n  = help: write `{}`\n",
             displayed(path),
             displayed(&path.with_extension("svg"))
         )
