@@ -189,6 +189,9 @@ impl Component for MasterEnvironment {
             }
         }
         self.open_again(context)?;
+        for request in self.knowledge.open.ask_again() {
+            self.request(request, context)?;
+        }
         for request in self.knowledge.open.visit_again() {
             let visit = request.luggage - FIRST_VISIT;
             info!(context, "visit {visit} waits again: its robot left it");

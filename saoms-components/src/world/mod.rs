@@ -19,7 +19,7 @@ use crate::grid::Block;
 use crate::hardware::Hardware;
 use crate::messages::{
     AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, FaultKind,
-    LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList,
+    LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList, is_visit,
 };
 use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem};
@@ -137,7 +137,13 @@ impl Component for World {
             if !self.validator.accepts(response, header, Some(self.referee.map()), context) {
                 continue;
             }
-            if response.stage == LuggageStage::GivenUp && self.stock.give_up(response.luggage) {
+            let EventLuggage { luggage, stage, from, to, .. } = *response;
+            // What the environment says of it may arrive later than the robot that brings it.
+            let waits = matches!(stage, LuggageStage::Request | LuggageStage::Taken) && !is_visit(luggage);
+            if waits && self.stock.add(luggage, from, to) {
+                context.count("luggage.open", 1);
+            }
+            if stage == LuggageStage::GivenUp && self.stock.give_up(luggage) {
                 context.count("luggage.given_up", 1);
                 context.vote(Work::GivenUp);
             }

@@ -74,6 +74,30 @@ fn on_a_large_map_luggage_that_no_robot_can_bring_is_given_up() {
     assert_eq!((count(&run, "luggage", "given_up"), count(&run, "luggage", "delivered")), (1, 1), "{}", run.log());
 }
 
+/// Robots at their chargers (0,1), (0,2) and (0,3), without a battery that runs low.
+const COLUMN: [(u32, u32, &str); 3] = [(0, 1, ""), (0, 2, ""), (0, 3, "")];
+
+#[test]
+fn a_world_that_hears_late_of_luggage_does_not_make_robots_give_it_up() {
+    for topic in ["ETOPIC", "ELMSTOPIC"] {
+        let scenario = format!("at 0s delay 9s on {topic} from * to World; at 100ms luggage (2,1) to (3,10)");
+        let run = delivers(&fleet(11, "", &scenario, &COLUMN), 1, 1);
+        assert!(run.time_s < 15.0 && !run.log().contains("there is no luggage"), "{topic}: {}", run.log());
+    }
+}
+
+#[test]
+fn luggage_that_was_taken_before_the_master_heard_that_it_was_given_back_is_requested_again() {
+    // Robot 1 finds no luggage, and gives it back. Robot 2 takes it, and has to leave it to robot 1, which the master
+    // takes for its bearer.
+    let scenario = "at 0s for 1.5s delay 4s from * to World; \
+        at 1s for 1s delay 1s on ELMSTOPIC from Robot1 to Master; at 100ms luggage (2,1) to (3,10)";
+    let fleet = fleet(11, "", scenario, &COLUMN);
+    let run = delivers(&fleet, 1, 1);
+    assert!(run.log().contains("could not collect"), "{}", run.log());
+    fleet.expect_invariants(1..2, HOUR);
+}
+
 #[test]
 fn a_master_assigns_all_luggage_once() {
     let robots = [(0, 0, ""), (5, 5, ""), (10, 0, ""), (0, 10, ""), (10, 10, "asleep=true")];

@@ -124,6 +124,7 @@ impl MasterEnvironmentKnowledge {
         if !has_taken {
             self.open.hear_response(said);
         }
+        self.open.contend(said.luggage, other);
         self.assign(other, said.luggage, (said.from, said.to), true);
     }
 

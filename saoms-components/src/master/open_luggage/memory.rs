@@ -38,6 +38,8 @@ struct PieceMemory {
     stops: Vec<Block>,
     only: Option<u32>,
     since: Time,
+    contenders: Vec<u32>,
+    unheard: bool,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -56,7 +58,7 @@ impl OpenLuggage {
     /// The state for a master that goes on.
     pub(in crate::master) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused, waits, taken, left_by, stops, only, since, .. } = piece;
+            let Piece { from, to, refused, waits, taken, left_by, stops, only, since, unheard, .. } = piece;
             let (refused, stops) = (refused.iter().copied().collect(), stops.clone());
             PieceMemory {
                 luggage: *luggage,
@@ -69,6 +71,8 @@ impl OpenLuggage {
                 stops,
                 only: *only,
                 since: *since,
+                contenders: piece.contenders.iter().copied().collect(),
+                unheard: *unheard,
             }
         };
         // Periods came as whole microseconds.
@@ -95,10 +99,26 @@ impl OpenLuggage {
     /// The state of a master that goes on.
     pub(in crate::master) fn of(memory: OpenMemory) -> OpenLuggage {
         let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, refused, waits, taken, left_by, stops, only, since } = piece;
-            let refused = refused.into_iter().collect();
+            let PieceMemory { luggage, from, to, waits, taken, left_by, stops, only, since, unheard, .. } = piece;
+            let refused = piece.refused.into_iter().collect();
+            let contenders = piece.contenders.into_iter().collect();
             let (asked, discussed) = (None, since);
-            (luggage, Piece { from, to, refused, waits, taken, left_by, stops, only, since, asked, discussed })
+            let piece = Piece {
+                from,
+                to,
+                refused,
+                waits,
+                taken,
+                left_by,
+                stops,
+                only,
+                since,
+                asked,
+                discussed,
+                contenders,
+                unheard,
+            };
+            (luggage, piece)
         };
         let waiting = memory.pieces.iter().filter(|piece| piece.waits).map(|piece| (piece.since, piece.luggage));
         let waiting = waiting.collect();

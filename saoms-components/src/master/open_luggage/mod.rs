@@ -68,6 +68,10 @@ struct Piece {
     asked: Option<u32>,
     /// Time until which robots may decide by themselves who takes it: one of them is interested.
     discussed: Time,
+    /// Robots that are told to give it back, since another one has taken it, until they do.
+    contenders: BTreeSet<u32>,
+    /// True if one of these gave it back: robots that heard that it was taken do not know that it may wait since.
+    unheard: bool,
 }
 
 impl Piece {
@@ -87,6 +91,11 @@ impl Piece {
         if std::mem::replace(&mut self.from, block) != block {
             self.refused.clear();
         }
+    }
+
+    /// A robot does not bring it that was told to give it back.
+    fn concede(&mut self, robot: u32) {
+        self.unheard |= self.contenders.remove(&robot);
     }
 
     /// True if this robot may do it and did not refuse it.
@@ -201,12 +210,30 @@ impl OpenLuggage {
 
     /// The robot does not bring the luggage that was assigned to it.
     pub(super) fn hand_back(&mut self, luggage: u32, robot: u32) {
-        if let Some(piece) = self.pieces.get_mut(&luggage)
-            && (piece.asked == Some(robot) || piece.taken == Some(robot))
-        {
+        let Some(piece) = self.pieces.get_mut(&luggage) else { return };
+        piece.concede(robot);
+        if piece.asked == Some(robot) || piece.taken == Some(robot) {
             (piece.asked, piece.taken, piece.waits) = (None, None, true);
             self.waiting.insert((piece.since, luggage));
         }
+    }
+
+    /// A robot is told to give luggage back, since another one has taken it.
+    pub(super) fn contend(&mut self, luggage: u32, robot: u32) {
+        if let Some(piece) = self.pieces.get_mut(&luggage) {
+            piece.contenders.insert(robot);
+        }
+    }
+
+    /// Requests again what waits although robots heard last that it is taken.
+    pub(super) fn ask_again(&mut self) -> Vec<EventLuggage> {
+        let unheard = |piece: &Piece| piece.unheard && piece.waits && piece.contenders.is_empty();
+        let unheard = self.pieces.iter_mut().filter(|(_, piece)| unheard(piece));
+        let again = unheard.map(|(luggage, piece)| {
+            piece.unheard = false;
+            piece.request(*luggage)
+        });
+        again.collect()
     }
 
     /// The robot that brings luggage, or that is to.
@@ -260,6 +287,7 @@ impl OpenLuggage {
             self.broken.remove(&robot.robot);
             self.breaking.remove(&robot.robot);
             self.changed |= self.active.remove(&robot.robot).is_some();
+            self.pieces.values_mut().for_each(|piece| piece.concede(robot.robot));
             let left = |piece: &Piece| !piece.stops.is_empty() && piece.taken == Some(robot.robot);
             let left = self.pieces.iter().filter(|(_, piece)| left(piece));
             self.left_visits.extend(left.map(|(luggage, _)| *luggage));
@@ -274,6 +302,7 @@ impl OpenLuggage {
             CriticalStage::Request => {
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
                     (piece.taken, piece.asked, piece.left_by) = (None, None, None);
+                    piece.contenders.remove(&situation.critical);
                     piece.lies_at(from);
                     self.changed = true;
                     self.waiting.remove(&(piece.since, luggage));

@@ -33,6 +33,7 @@ impl OpenLuggage {
             self.left.remove(&robot);
         }
         for (luggage, piece) in &mut self.pieces {
+            piece.concede(robot);
             if piece.taken == Some(robot) {
                 (piece.taken, piece.left_by) = (None, Some(robot));
             } else if piece.asked == Some(robot) {

@@ -92,6 +92,8 @@ pub struct Requests {
     settled: Numbers,
     /// Luggage that a master assigned to this robot, or took back, which the robot has not answered yet.
     assigned: Vec<Assigned>,
+    /// When luggage was requested last that nobody took since. That somebody took it before may be heard later.
+    requested: BTreeMap<u32, Time>,
 }
 
 /// Greatest number of assignments that wait for an answer: a robot without a loop that answers keeps the newest.
@@ -118,6 +120,13 @@ pub(in crate::robot) struct RequestsMemory {
     visits: Vec<Visit>,
     settled: Numbers,
     assigned: Vec<Assigned>,
+    requested: Vec<Requested>,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct Requested {
+    luggage: u32,
+    at: Time,
 }
 
 /// Luggage that this robot refused, and where it was; none where that is not known.
@@ -143,6 +152,7 @@ impl Requests {
             visits: self.visits.values().cloned().collect(),
             settled: self.settled.clone(),
             assigned: self.assigned.clone(),
+            requested: self.requested.iter().map(|(&luggage, &at)| Requested { luggage, at }).collect(),
         }
     }
 
@@ -151,6 +161,7 @@ impl Requests {
         self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
         self.visits = memory.visits.into_iter().map(|visit| (visit.visit, visit)).collect();
         (self.settled, self.assigned) = (memory.settled, memory.assigned);
+        self.requested = memory.requested.iter().map(|requested| (requested.luggage, requested.at)).collect();
     }
 
     /// An empty list, for the robot with this number.
@@ -164,6 +175,7 @@ impl Requests {
             visits: BTreeMap::new(),
             settled: Numbers::default(),
             assigned: Vec::new(),
+            requested: BTreeMap::new(),
         }
     }
 
@@ -215,9 +227,14 @@ impl Requests {
         if event.stage == LuggageStage::Request {
             return self.hear_request(event, header);
         }
-        let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
+        let gone = match event.stage {
+            // Whoever took it before has given it back.
+            LuggageStage::Taken => self.requested.get(&event.luggage).is_none_or(|at| *at <= header.sent),
+            stage => matches!(stage, LuggageStage::Delivered | LuggageStage::GivenUp),
+        };
         if gone {
             self.settled.insert(event.luggage);
+            self.requested.remove(&event.luggage);
         }
         if matches!(event.stage, LuggageStage::Delivered | LuggageStage::GivenUp) {
             self.visits.remove(&event.luggage);
@@ -271,6 +288,10 @@ impl Requests {
             let is_elsewhere = |refused: &Refused| refused.from.is_some_and(|from| from != event.from);
             self.refused.retain(|refused| refused.luggage != event.luggage || !is_elsewhere(refused));
         }
+        if !is_again {
+            let requested = self.requested.entry(event.luggage).or_insert(header.sent);
+            *requested = header.sent.max(*requested);
+        }
         let mut known = self.open.iter().chain(&self.claimed);
         let refused = self.refused.iter().any(|refused| refused.luggage == event.luggage);
         if !refused && !known.any(|request| request.job.luggage == event.luggage) {
@@ -302,6 +323,8 @@ impl Requests {
     /// Keeps the open requests of a part of the map, for a robot that hears no more of the others.
     pub(in crate::robot) fn keep(&mut self, is_near: impl Fn(Block) -> bool) {
         self.open.retain(|request| is_near(request.job.from));
+        let Requests { open, claimed, requested, .. } = self;
+        requested.retain(|luggage, _| open.iter().chain(&*claimed).any(|request| request.job.luggage == *luggage));
     }
 
     /// Removes requests that other robots took an interest in.

@@ -25,7 +25,7 @@ fn lists() -> Lists {
     let mut lists = Lists::new(MINE);
     for luggage in 1..=3 {
         lists.requests.hear(&request(luggage), at(luggage.into()));
-        lists.requests.hear(&request(luggage), at(9));
+        lists.requests.hear(&request(luggage), at(3));
     }
     lists
 }
@@ -43,6 +43,19 @@ fn taken_luggage_leaves_the_list() {
     assert_eq!(open(&lists), [1], "whichever loop of this robot took it");
     lists.requests.hear(&response(1, 1, LuggageStage::Delivered), at(5));
     assert_eq!(open(&lists), [0; 0]);
+}
+
+#[test]
+fn luggage_that_was_taken_before_it_was_requested_again_waits() {
+    let mut lists = lists();
+    lists.requests.hear(&request(2), at(7));
+    lists.requests.hear(&response(2, 1, LuggageStage::Taken), at(6));
+    lists.requests.hear(&request(4), at(7));
+    lists.requests.hear(&response(4, 1, LuggageStage::Taken), at(6));
+    assert_eq!(open(&lists), [1, 2, 3, 4]);
+    lists.requests.hear(&response(2, 1, LuggageStage::Taken), at(8));
+    lists.requests.hear(&response(4, 1, LuggageStage::Taken), at(7));
+    assert_eq!(open(&lists), [1, 3]);
 }
 
 #[test]
