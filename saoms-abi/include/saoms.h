@@ -303,6 +303,9 @@ typedef struct SaomsStopView {
     void (*release)(void *state);
 } SaomsStopView;
 
+// The visitor of what a component keeps, called with a number and the bytes under it.
+typedef void (*SaomsKeptVisitor)(void *visitor, uint64_t key, struct SaomsBytes bytes);
+
 // A region of blocks, from one corner to the other, both included.
 typedef struct SaomsRegionView {
     // Column and row of the least corner.
@@ -422,12 +425,12 @@ typedef struct SaomsHostFunctions {
     // Registers a function that stops the component's hardware from any thread, in `initialize` alone; the declaration
     // of the class says `"stops": true`. The host frees its state with `release`, also when it refuses the function.
     SaomsStatus (*register_stop)(void *state, const struct SaomsStopView *stop, struct SaomsSink error);
-    // Keeps these bytes beyond a crash of the component, in place of those before, and gives their number. What this
-    // execution sends goes out once they are kept; they are lost if it fails.
-    SaomsStatus (*keep)(void *state, struct SaomsBytes bytes, uint64_t *number, struct SaomsSink error);
-    // The newest bytes that are kept, lent for the time of the call, and their number; 0 and none before there are
-    // any. `number` may be null.
-    struct SaomsBytes (*kept)(void *state, uint64_t *number);
+    // Keeps these bytes under a number beyond a crash of the component; no bytes remove them. What this and later
+    // executions send goes out once they are committed; they are lost if this execution fails.
+    SaomsStatus (*keep)(void *state, uint64_t key, struct SaomsBytes bytes, struct SaomsSink error);
+    // Passes all that is kept to `visit`, in the order of the numbers; the bytes are lent until the call of the
+    // component ends. Not 0 if an earlier program left it, and the component has kept nothing since.
+    uint32_t (*kept)(void *state, void *visitor, SaomsKeptVisitor visit);
     // Lets a subscription receive the messages of a region alone; with null it receives all. The schema of the topic
     // has a `place`.
     SaomsStatus (*set_region)(void *state,

@@ -128,12 +128,12 @@ pub struct HostFunctions {
     /// Registers a function that stops the component's hardware from any thread, in `initialize` alone; the declaration
     /// of the class says `"stops": true`. The host frees its state with `release`, also when it refuses the function.
     pub register_stop: unsafe extern "C" fn(state: *mut c_void, stop: *const StopView, error: Sink) -> Status,
-    /// Keeps these bytes beyond a crash of the component, in place of those before, and gives their number. What this
-    /// execution sends goes out once they are kept; they are lost if it fails.
-    pub keep: unsafe extern "C" fn(state: *mut c_void, bytes: Bytes, number: *mut u64, error: Sink) -> Status,
-    /// The newest bytes that are kept, lent for the time of the call, and their number; 0 and none before there are
-    /// any. `number` may be null.
-    pub kept: unsafe extern "C" fn(state: *mut c_void, number: *mut u64) -> Bytes,
+    /// Keeps these bytes under a number beyond a crash of the component; no bytes remove them. What this and later
+    /// executions send goes out once they are committed; they are lost if this execution fails.
+    pub keep: unsafe extern "C" fn(state: *mut c_void, key: u64, bytes: Bytes, error: Sink) -> Status,
+    /// Passes all that is kept to `visit`, in the order of the numbers; the bytes are lent until the call of the
+    /// component ends. Not 0 if an earlier program left it, and the component has kept nothing since.
+    pub kept: unsafe extern "C" fn(state: *mut c_void, visitor: *mut c_void, visit: KeptVisitor) -> u32,
     /// Lets a subscription receive the messages of a region alone; with null it receives all. The schema of the topic
     /// has a `place`.
     pub set_region:
@@ -156,6 +156,9 @@ pub struct HostFunctions {
     pub publishers:
         unsafe extern "C" fn(state: *mut c_void, topic: Bytes, visitor: *mut c_void, visit: PublisherVisitor),
 }
+
+/// The visitor of what a component keeps, called with a number and the bytes under it.
+pub type KeptVisitor = unsafe extern "C" fn(visitor: *mut c_void, key: u64, bytes: Bytes);
 
 /// The visitor of the publishers of a topic, called with the index of a component in the running fleet, and with 1 if
 /// that component was ever scheduled, else 0, and with the number by which it says who speaks in messages, or -1.

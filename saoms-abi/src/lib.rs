@@ -41,7 +41,7 @@ pub use component::{ClassTable, ComponentTable, Construct};
 pub use entries::{EntriesFunctions, EntriesHandle, EntryView};
 pub use error::ReadError;
 pub use finding::{FindingSink, FindingView, LabelView, PlaceView};
-pub use host::{HostFunctions, HostHandle, LoopVisitor, PublisherVisitor};
+pub use host::{HostFunctions, HostHandle, KeptVisitor, LoopVisitor, PublisherVisitor};
 pub use looping::{LoopClassTable, LoopInstance, LoopTable, Step};
 pub use message::{Inbox, MessageView, TopicView};
 pub use plugin::{EntryPoint, PluginTable, SECTION};

@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
@@ -291,20 +292,20 @@ impl<'a> Context<'a> {
         self.host.publishers(topic.name())
     }
 
-    /// Keeps these bytes beyond a crash of the component, in place of those that it kept before:
-    /// [`kept`](Context::kept) gives them back, also to the component that takes its place after a failure. The
-    /// messages of this execution are delivered once the bytes are kept, so that no component receives a message about
-    /// a state that could be lost. The number distinguishes them from earlier ones.
+    /// Keeps these bytes under a number that the component chooses, beyond its crash: [`kept`](Context::kept) gives
+    /// them back. No bytes remove what is kept under that number. They are lost if this execution fails.
     ///
-    /// They are lost if this execution fails. They are kept in memory, for as long as the program runs.
+    /// What an execution keeps is committed as a whole. **Messages of this and of later executions leave once it is**,
+    /// in their order, so that no component receives a message about a state that could be lost. With `--state` that is
+    /// when it is on the disk, in virtual time after a delay, else at once. Calls of services do not wait for it.
     ///
     /// # Errors
-    /// There are more than 64 MiB.
-    pub fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
-        self.host.keep(bytes)
+    /// All that is kept is more than 64 MiB, or the disk does not take it.
+    pub fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
+        self.host.keep(key, bytes)
     }
 
-    /// The newest bytes that are [kept](Context::keep), and their number; 0 and none before there are any.
+    /// What the component, or the one before it, [kept](Context::keep) up to its last execution, by its numbers.
     ///
     /// ```
     /// use saoms_api::{Class, Component, Context, Failure};
@@ -320,19 +321,24 @@ impl<'a> Context<'a> {
     ///     type Properties = ();
     ///
     ///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-    ///         self.count = context.kept().1.first().copied().unwrap_or(0);
+    ///         self.count = context.kept().get(&1).map_or(0, |bytes| bytes[0]);
     ///         Ok(())
     ///     }
     ///
     ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
     ///         self.count = self.count.checked_add(1).ok_or("it cannot count further")?;
-    ///         context.keep(&[self.count])?;
-    ///         Ok(())
+    ///         context.keep(1, &[self.count])
     ///     }
     /// }
     /// ```
-    pub fn kept(&self) -> (u64, &[u8]) {
+    pub fn kept(&self) -> BTreeMap<u64, &[u8]> {
         self.host.kept()
+    }
+
+    /// True if an earlier program left what is [kept](Context::kept), and the component has kept nothing since: whoever
+    /// runs beside it may have lost its memory then.
+    pub fn kept_by_earlier_program(&self) -> bool {
+        self.host.kept_by_earlier_program()
     }
 
     /// True in the `initialize` of a component that takes the place of another one and goes on from what that

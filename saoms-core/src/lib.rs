@@ -12,3 +12,4 @@ pub mod plugin;
 pub mod report;
 pub mod schedule;
 pub mod status;
+pub mod store;

@@ -1,4 +1,5 @@
 #[cfg(feature = "fleets")]
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -260,9 +261,9 @@ impl Bench {
         Ok(())
     }
 
-    /// The newest bytes that the component [kept](Context::keep), and their number.
-    pub fn kept(&self) -> (u64, &[u8]) {
-        (self.stage.kept.0, &self.stage.kept.1)
+    /// What the component [kept](Context::keep), by its numbers.
+    pub fn kept(&self) -> &BTreeMap<u64, Vec<u8>> {
+        &self.stage.kept
     }
 
     /// Stops the hardware of the component, and of those that it is wired to, with the functions that they

@@ -87,8 +87,8 @@ pub(crate) struct Stage {
     /// The text of each record by loop, phase and id.
     texts: BTreeMap<(Option<u32>, &'static str, &'static str), &'static str>,
     pub(crate) stops: Vec<StopFunction>,
-    /// Number and bytes of what the component keeps.
-    pub(crate) kept: (u64, Vec<u8>),
+    /// What the component keeps, by its numbers.
+    pub(crate) kept: BTreeMap<u64, Vec<u8>>,
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
     pub(crate) gave_up: bool,
@@ -132,7 +132,7 @@ impl Stage {
             actions: Vec::new(),
             texts: BTreeMap::new(),
             stops: Vec::new(),
-            kept: (0, Vec::new()),
+            kept: BTreeMap::new(),
             report: Vec::new(),
             work: None,
             gave_up: false,
@@ -367,13 +367,16 @@ impl Host for Stage {
         self.subscriptions.get(subscription as usize).map_or(&[], |topic| &topic.departed)
     }
 
-    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
-        self.kept = (self.kept.0 + 1, bytes.to_vec());
-        Ok(self.kept.0)
+    fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
+        match bytes {
+            [] => drop(self.kept.remove(&key)),
+            _ => drop(self.kept.insert(key, bytes.to_vec())),
+        }
+        Ok(())
     }
 
-    fn kept(&self) -> (u64, &[u8]) {
-        (self.kept.0, &self.kept.1)
+    fn kept(&self) -> BTreeMap<u64, &[u8]> {
+        self.kept.iter().map(|(key, bytes)| (*key, bytes.as_slice())).collect()
     }
 
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {

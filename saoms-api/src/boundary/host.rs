@@ -4,8 +4,8 @@ use std::ffi::c_void;
 use std::time::Duration;
 
 use saoms_abi::{
-    Bytes, DepartedView, HostFunctions, LoopInstance, LoopVisitor, PublisherVisitor, RecordView, RegionView,
-    ReportView, Sink, Status, StopView, TopicView, ValueView,
+    Bytes, DepartedView, HostFunctions, KeptVisitor, LoopInstance, LoopVisitor, PublisherVisitor, RecordView,
+    RegionView, ReportView, Sink, Status, StopView, TopicView, ValueView,
 };
 
 use crate::host::Host;
@@ -116,26 +116,20 @@ unsafe extern "C" fn register_stop(state: *mut c_void, view: *const StopView, er
     unsafe { guarded(error, || host(state)?.register_stop(stop::import(view)?)) }
 }
 
-unsafe extern "C" fn keep(state: *mut c_void, bytes: Bytes, number: *mut u64, error: Sink) -> Status {
+unsafe extern "C" fn keep(state: *mut c_void, key: u64, bytes: Bytes, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
-    unsafe {
-        guarded(error, || {
-            *place(number, "the place of the number")? = host(state)?.keep(bytes.get()?)?;
-            Ok(())
-        })
-    }
+    unsafe { guarded(error, || host(state)?.keep(key, bytes.get()?)) }
 }
 
-unsafe extern "C" fn kept(state: *mut c_void, number: *mut u64) -> Bytes {
-    // SAFETY: callers pass the state of their handle, and a place for the number or null; the bytes stay as they are
+unsafe extern "C" fn kept(state: *mut c_void, visitor: *mut c_void, visit: KeptVisitor) -> u32 {
+    // SAFETY: callers pass the state of their handle, and their own function and state; the bytes stay as they are
     // until the call in which they are lent has ended.
     unsafe {
-        with_host(state, Bytes::NONE, |host| {
-            let (newest, bytes) = host.kept();
-            if let Some(number) = number.as_mut() {
-                *number = newest;
+        with_host(state, 0, |host| {
+            for (key, bytes) in host.kept() {
+                visit(visitor, key, Bytes::lend(bytes));
             }
-            Bytes::lend(bytes)
+            u32::from(host.kept_by_earlier_program())
         })
     }
 }

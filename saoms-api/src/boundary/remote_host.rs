@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::fmt::{self, Write as _};
 use std::mem::MaybeUninit;
@@ -139,6 +140,16 @@ unsafe extern "C" fn visit_loop(
     }
 }
 
+/// Adds bytes to the map of [`RemoteHost::kept`].
+unsafe extern "C" fn visit_kept(kept: *mut c_void, key: u64, bytes: Bytes) {
+    // SAFETY: the host passes on the map of `kept`, and lends the bytes until the call ends in which that is used.
+    unsafe {
+        if let Some(kept) = kept.cast::<BTreeMap<u64, &[u8]>>().as_mut() {
+            kept.insert(key, bytes.get().unwrap_or_default());
+        }
+    }
+}
+
 /// Adds a component to the list of [`RemoteHost::publishers`].
 unsafe extern "C" fn visit_publisher(list: *mut c_void, sender: u32, has_begun: u32, number: i64) {
     // SAFETY: the host passes on the list of `publishers`.
@@ -257,17 +268,20 @@ impl Host for RemoteHost<'_> {
         known
     }
 
-    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
-        let (mut number, mut error) = (0, Buffer::default());
-        let status = get!(self.keep, Bytes::lend(bytes), &raw mut number, sink(&mut error));
-        outcome(status, &error.bytes).map(|()| number)
+    fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
+        let mut error = Buffer::default();
+        outcome(get!(self.keep, key, Bytes::lend(bytes), sink(&mut error)), &error.bytes)
     }
 
-    fn kept(&self) -> (u64, &[u8]) {
-        let mut number = 0;
-        let bytes = get!(self.kept, &raw mut number);
-        // SAFETY: the host lends the bytes until the call ends, in which this host is used.
-        (number, unsafe { bytes.get() }.unwrap_or_default())
+    fn kept(&self) -> BTreeMap<u64, &[u8]> {
+        let mut kept: BTreeMap<u64, &[u8]> = BTreeMap::new();
+        get!(self.kept, (&raw mut kept).cast(), visit_kept);
+        kept
+    }
+
+    fn kept_by_earlier_program(&self) -> bool {
+        let mut kept: BTreeMap<u64, &[u8]> = BTreeMap::new();
+        get!(self.kept, (&raw mut kept).cast(), visit_kept) != 0
     }
 
     fn raise(&mut self, event: &str) -> Result<(), Failure> {

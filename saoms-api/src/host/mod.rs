@@ -9,6 +9,7 @@ pub mod present;
 mod visible;
 mod xml;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
@@ -129,9 +130,13 @@ pub trait Host {
     ///
     /// # Errors
     /// As there.
-    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure>;
+    fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure>;
     /// See [`Context::kept`](crate::Context::kept).
-    fn kept(&self) -> (u64, &[u8]);
+    fn kept(&self) -> BTreeMap<u64, &[u8]>;
+    /// See [`Context::kept_by_earlier_program`](crate::Context::kept_by_earlier_program).
+    fn kept_by_earlier_program(&self) -> bool {
+        false
+    }
     /// See [`Context::goes_on`](crate::Context::goes_on).
     fn goes_on(&self) -> bool {
         false

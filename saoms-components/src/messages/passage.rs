@@ -90,7 +90,8 @@ pub struct GrantRequest {
     pub block: Block,
     /// End of the robot's passage: the last block that it holds.
     pub end: Block,
-    /// Highest number of a step that the robot has received.
+    /// Highest number of a step that the robot has received; the highest number of all when it leaves the fleet, since
+    /// it takes none any more.
     pub received: u64,
     /// Steps that the robot holds. It released all others up to `received`.
     pub held: Vec<Step>,

@@ -257,6 +257,15 @@ impl ZoneClient {
         }
     }
 
+    /// The robot leaves the fleet where it is, or where it has begun to go: it releases the rest of its passage, also
+    /// what is granted and on its way.
+    pub(crate) fn leave(&mut self, begun: usize) {
+        self.stay(begun);
+        if let Some(passage) = &mut self.passage {
+            passage.leave();
+        }
+    }
+
     /// Sends what changed, or what was not confirmed for long.
     ///
     /// # Errors

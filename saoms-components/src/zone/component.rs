@@ -129,16 +129,24 @@ impl Zone {
             return Ok(());
         }
         let Some(map) = self.map(context)? else { return Ok(()) };
-        let kept = memory::from_bytes(context.kept().1)?;
+        let kept = memory::record(&context.kept()).unwrap_or_else(|failure| {
+            warn!(context, "asks all robots where they are, since its record of grants cannot be read: {failure}");
+            None
+        });
         let term = context.date().unwrap_or_else(|| context.now().since(saoms_api::Time::START));
         let term = u64::try_from(term.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
         let territory = self.properties.territory(term, &map).map_err(|finding| Failure::from(*finding))?;
         let ledger = match kept {
-            Some((ledger, true)) if is_same(ledger.territory(), &territory) => {
-                self.open = true;
+            Some(ledger) if is_same(ledger.territory(), &territory) => {
+                // The robots of an earlier program have lost their memory with it: each has to say where it is first.
+                self.open = !context.kept_by_earlier_program();
                 ledger
             }
-            _ => Ledger::new(territory),
+            _ => {
+                let earlier: Vec<u64> = context.kept().into_keys().collect();
+                earlier.into_iter().try_for_each(|key| context.keep(key, &[]))?;
+                Ledger::new(territory)
+            }
         };
         context.send(&self.territories, ledger.territory().clone())?;
         self.state = Some(State { ledger, maneuvers: Vec::new(), ground: Ground::new(map) });
@@ -165,12 +173,13 @@ impl Zone {
 
     fn serve(&mut self, state: &mut State, context: &mut Context<'_>) -> Result<(), Failure> {
         let mut changed = self.hear(state, context);
-        changed |= self.hear_gone(state, context);
+        changed.extend(self.hear_gone(state, context));
         if !self.is_open(state, context)? {
-            return if changed { self.keep(state, context) } else { Ok(()) };
+            // It begins a new record once all have answered.
+            return Ok(());
         }
         let Planned { granted, waiting: mut told } = self.plan(state);
-        changed |= !granted.is_empty();
+        changed.extend(&granted);
         told.extend(granted);
         self.name_deadlocks(state, context);
         let execution = context.execution();
@@ -185,8 +194,10 @@ impl Zone {
             let unheard = |member: &Member| member.granted > member.request.received && !member.steps.is_empty();
             told.extend(state.ledger.members().iter().filter(|(_, member)| unheard(member)).map(|(robot, _)| *robot));
         }
-        if changed {
-            self.keep(state, context)?;
+        // Before the messages of this execution leave.
+        for robot in changed {
+            let (key, bytes) = memory::member(&state.ledger, robot);
+            context.keep(key, &bytes)?;
         }
         for grant in told.iter().filter_map(|robot| state.ledger.message(*robot)) {
             context.send(&self.grants, grant)?;
@@ -194,15 +205,9 @@ impl Zone {
         Ok(())
     }
 
-    /// Keeps the record, before the messages of this execution leave.
-    fn keep(&self, state: &State, context: &mut Context<'_>) -> Result<(), Failure> {
-        let kept = memory::to_bytes(&state.ledger, self.open);
-        context.keep(kept.bytes()).map(|_| ())
-    }
-
-    /// Takes in what robots ask for.
-    fn hear(&mut self, state: &mut State, context: &mut Context<'_>) -> bool {
-        let mut changed = false;
+    /// Takes in what robots ask for. Returns those whose record has changed.
+    fn hear(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
+        let mut changed = BTreeSet::new();
         let State { ledger, ground, .. } = state;
         for (header, request) in context.receive(&self.requests).with_headers() {
             let is_here = request.zone == ledger.territory().zone && request.term == ledger.territory().term;
@@ -215,21 +220,24 @@ impl Zone {
             let spoke = self.spoke.entry(request.robot).or_default();
             *spoke = header.sent.max(*spoke);
             let heard = ledger.hear(request);
-            if let Heard::Conflict { block, other } = heard {
+            // While it is closed, the other one may have to say yet that it is somewhere else.
+            if let (Heard::Conflict { block, other }, true) = (heard, self.open) {
                 let robot = request.robot;
                 warn!(context, "robot {robot} is at {block}, which was granted to robot {other}");
                 context.effect(record!(grant_conflict: "robot {robot} is on a block of robot {other}", robot, other));
             }
-            changed |= heard != Heard::Nothing;
+            if heard != Heard::Nothing {
+                changed.insert(request.robot);
+            }
             self.unconfirmed.entry(request.robot).or_insert(context.execution() + CONFIRM);
         }
         changed
     }
 
     /// Frees the blocks of robots that somebody took off the floor. Those whose component failed keep the block where a
-    /// world stopped them, or all where that is not known.
-    fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> bool {
-        let mut changed = false;
+    /// world stopped them, or all where that is not known. Returns those whose record has changed.
+    fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
+        let mut changed = BTreeSet::new();
         for fault in context.receive(&self.faults).filter(|fault| fault.silences()) {
             if fault.is_failure() {
                 // One that has begun anew since said what it holds.
@@ -237,7 +245,7 @@ impl Zone {
                 if !self.spoke.get(&fault.robot).is_some_and(is_over) {
                     let at = fault.block.filter(|_| self.spoke.contains_key(&fault.robot));
                     state.ledger.stop(fault.robot, at);
-                    changed = true;
+                    changed.insert(fault.robot);
                 }
                 continue;
             }
@@ -245,7 +253,7 @@ impl Zone {
             if !self.open {
                 self.gone.insert(fault.robot);
             }
-            changed = true;
+            changed.insert(fault.robot);
         }
         changed
     }
@@ -262,7 +270,10 @@ impl Zone {
         if unheard.is_empty() {
             self.open = true;
             (self.heard, self.gone) = (BTreeSet::new(), BTreeSet::new());
-            self.keep(state, context)?;
+            let members = state.ledger.members().keys().map(|robot| memory::member(&state.ledger, *robot));
+            for (key, bytes) in std::iter::once(memory::territory(&state.ledger)).chain(members) {
+                context.keep(key, &bytes)?;
+            }
             context.alert_over("closed", "");
             return Ok(true);
         }

@@ -221,7 +221,7 @@ impl Ledger {
         let Some(place) = self.place(block).filter(|place| self.holders[*place] == 0) else { return false };
         let Some(member) = self.members.get_mut(&robot) else { return false };
         self.holders[place] = robot;
-        member.granted += 1;
+        member.granted = member.granted.saturating_add(1);
         member.steps.push(Step { number: member.granted, block });
         member.waited = 0;
         true

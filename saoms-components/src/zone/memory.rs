@@ -1,45 +1,68 @@
-//! A zone's record of grants in the bytes that it keeps.
+//! A zone's record of grants in the bytes that it keeps: its territory, and what it knows of each robot.
 
-use saoms_api::{Failure, Field, Message, Saved};
+use std::collections::BTreeMap;
+
+use saoms_api::host::cdr;
+use saoms_api::{Failure, Message, Saved};
 
 use super::ledger::{Ledger, Member};
 use crate::messages::{GrantRequest, Step, Territory};
 
+/// Where the territory is kept. A robot is kept under its number, which is never 0.
+const TERRITORY: u64 = 0;
+
+/// The territory of a zone that grants, and the form in which robots are kept.
 #[derive(Clone, Debug, Message)]
-struct LedgerMemory {
+struct TerritoryMemory {
     territory: Territory,
-    members: Vec<MemberMemory>,
-    /// True if the zone grants: all robots have said where they are.
-    open: bool,
+    form: String,
 }
 
-#[derive(Clone, Debug, Field)]
+/// What a zone knows of a robot.
+#[derive(Clone, Debug, Message)]
 struct MemberMemory {
     request: GrantRequest,
     steps: Vec<Step>,
     granted: u64,
 }
 
-/// The bytes of a record, of a zone that grants or does not yet.
-pub(super) fn to_bytes(ledger: &Ledger, open: bool) -> Saved {
-    let members = ledger.members().values().map(|Member { request, steps, granted, .. }| MemberMemory {
+/// The bytes of the territory, of a zone that grants.
+pub(super) fn territory(ledger: &Ledger) -> (u64, Vec<u8>) {
+    let (territory, form) = (ledger.territory().clone(), MemberMemory::SCHEMA.to_owned());
+    let memory = TerritoryMemory { territory, form };
+    (TERRITORY, Saved::of(&memory).bytes().to_vec())
+}
+
+/// The bytes of a robot; none for one that the zone does not know any more.
+pub(super) fn member(ledger: &Ledger, robot: u32) -> (u64, Vec<u8>) {
+    let member = ledger.member(robot).map(|Member { request, steps, granted, .. }| MemberMemory {
         request: request.clone(),
         steps: steps.clone(),
         granted: *granted,
     });
-    Saved::of(&LedgerMemory { territory: ledger.territory().clone(), members: members.collect(), open })
+    (u64::from(robot), member.map_or_else(Vec::new, |member| cdr::encode(&member)))
 }
 
-/// The record of these bytes; `None` if there are none.
+/// The record of a zone that granted; `None` if there is none.
 ///
 /// # Errors
 /// The bytes are no record of this build.
-pub(super) fn from_bytes(bytes: &[u8]) -> Result<Option<(Ledger, bool)>, Failure> {
-    let Some(LedgerMemory { territory, members, open }) = Saved::from_bytes(bytes.to_vec()).read()? else {
+pub(super) fn record(kept: &BTreeMap<u64, &[u8]>) -> Result<Option<Ledger>, Failure> {
+    let Some(territory) = kept.get(&TERRITORY) else { return Ok(None) };
+    let Some(TerritoryMemory { territory, form }) = Saved::from_bytes(territory.to_vec()).read()? else {
         return Ok(None);
     };
-    let members = members
-        .into_iter()
-        .map(|MemberMemory { request, steps, granted }| (request.robot, Member::new(request, steps, granted)));
-    Ok(Some((Ledger::with(territory, members.collect()), open)))
+    if form != MemberMemory::SCHEMA {
+        return Err(Failure::new(format!(
+            "an earlier build kept robots as {form}, and this one keeps them as {}",
+            MemberMemory::SCHEMA
+        )));
+    }
+    let mut members = BTreeMap::new();
+    for (_, bytes) in kept.range(TERRITORY + 1..) {
+        let MemberMemory { request, steps, granted } = cdr::decode(bytes)
+            .map_err(|error| Failure::new(format!("what was kept of a robot cannot be read: {error}")))?;
+        members.insert(request.robot, Member::new(request, steps, granted));
+    }
+    Ok(Some(Ledger::with(territory, members)))
 }

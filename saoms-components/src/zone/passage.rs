@@ -140,6 +140,11 @@ impl Passage {
         self.held.truncate(first.max(1));
     }
 
+    /// The robot leaves the fleet: it takes no step any more that it has not received.
+    pub(crate) fn leave(&mut self) {
+        self.links.iter_mut().for_each(|link| link.received = u64::MAX);
+    }
+
     /// The requests that have to be sent now: new ones, and with `again` also those that were not taken in.
     pub(crate) fn requests(&mut self, wish: Wish, again: bool) -> Vec<GrantRequest> {
         let Passage { robot, incarnation, ref held, ref mut links } = *self;

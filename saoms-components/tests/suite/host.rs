@@ -332,12 +332,12 @@ impl Host for View<'_> {
         &[]
     }
 
-    fn keep(&mut self, _: &[u8]) -> Result<u64, Failure> {
-        Ok(1)
+    fn keep(&mut self, _: u64, _: &[u8]) -> Result<(), Failure> {
+        Ok(())
     }
 
-    fn kept(&self) -> (u64, &[u8]) {
-        (0, &[])
+    fn kept(&self) -> BTreeMap<u64, &[u8]> {
+        BTreeMap::new()
     }
 
     fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {

@@ -9,7 +9,7 @@ use saoms_lang::assembly::Assembly;
 
 use super::change::{self, StartError};
 use super::component::library::with_library;
-use super::drive;
+use super::drive::{self, store_writer};
 use super::engine::RunPhase;
 use super::engine::slot::NEVER;
 use super::handle::Handle;
@@ -65,18 +65,18 @@ impl RunningFleet {
         settings: Settings,
         observers: Vec<Arc<dyn Observer>>,
     ) -> Result<RunningFleet, StartError> {
-        RunningFleet::start_with(assembly, settings, observers, |_| ())
+        RunningFleet::start_with(assembly, settings, observers, |_| Ok(()))
     }
 
     /// The same, with code that gets the remote control before the components initialize, which may take long.
     ///
     /// # Errors
-    /// As [`start`](RunningFleet::start).
+    /// As [`start`](RunningFleet::start), or those of that code.
     pub fn start_with(
         assembly: Assembly,
         settings: Settings,
         observers: Vec<Arc<dyn Observer>>,
-        before: impl FnOnce(&Handle),
+        before: impl FnOnce(&Handle) -> Result<(), StartError>,
     ) -> Result<RunningFleet, StartError> {
         contain::install_hook();
         let settings = settings.checked();
@@ -107,8 +107,9 @@ impl RunningFleet {
         fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
-        before(&fleet.handle);
+        before(&fleet.handle)?;
         change::apply(shared, assembly)?;
+        store_writer::note_unused(shared);
         Ok(fleet)
     }
 
@@ -141,6 +142,7 @@ impl RunningFleet {
     pub fn run_to_end(mut self) -> RunReport {
         self.wait_for_end();
         self.wait_for_hardware();
+        store_writer::finish(&self.handle.shared);
         self.finish_journal();
         let shared = &self.handle.shared;
         let mut report = shared.lock().report(&shared.sections());
@@ -218,7 +220,7 @@ fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDel
     let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
     let deliver = move || {
-        deliver_records(&records, &shared.observers, |failure| shared.alert(FILE, "journal", failure.to_string()))
+        deliver_records(&records, &shared.observers, |failure| shared.alert(FILE, "journal", Some(failure.to_string())))
     };
     start_thread("saoms-journal", deliver).map(Some)
 }
@@ -241,6 +243,7 @@ impl Drop for RunningFleet {
             drive::wait_until(shared, |_| false);
         }
         self.wait_for_hardware();
+        store_writer::finish(&self.handle.shared);
         self.finish();
     }
 }

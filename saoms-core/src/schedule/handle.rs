@@ -9,7 +9,8 @@ use saoms_api::{Level, Time};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
 
-use super::change::{self, ChangeError, Changed, Takeover};
+use super::change::{self, ChangeError, Changed, StartError, Takeover};
+use super::drive::store_writer;
 use super::engine::RunPhase;
 use super::engine::lifecycle::Request;
 use super::engine::slot::NEVER;
@@ -26,6 +27,7 @@ use super::why;
 use crate::journal::LiveJournal;
 use crate::observe::{Observer, RunProgress, SentMessage};
 use crate::status::{FleetMetrics, FleetPhase, FleetStatus, TopicStatus};
+use crate::store::Store;
 
 /// Time for which the answers of components are waited for.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -220,6 +222,16 @@ impl Handle {
     pub fn hold(&self) -> Hold {
         self.shared.lock().injections.holds += 1;
         Hold { shared: Arc::clone(&self.shared) }
+    }
+
+    /// Has components keep in a store what they [keep](saoms_api::Context::keep), so that it outlives the program: in
+    /// the code that gets the control [before they initialize](super::RunningFleet::start_with), and once. It is closed
+    /// when the run has ended.
+    ///
+    /// # Errors
+    /// The system cannot create a thread.
+    pub fn use_store(&self, store: Store) -> Result<(), StartError> {
+        store_writer::use_store(&self.shared, store).map_err(StartError::Thread)
     }
 
     /// Adds to a count of the report.

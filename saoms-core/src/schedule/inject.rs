@@ -123,6 +123,8 @@ pub(super) struct Injections {
     count: u64,
     /// Number of those that are faults: the run does not wait for them.
     faults: usize,
+    /// Number of those that are commits: [`Engine::commits_are_over`] knows whether the run waits for them.
+    commits: usize,
     /// Number of holds that keep the run from ending for want of work.
     pub(super) holds: usize,
     /// Time since which messages wait for room in the queues of their readers.
@@ -145,6 +147,11 @@ enum Due {
     Order(Box<PendingOrder>),
     /// A fault, and its line for the journal.
     Fault(Box<TimedFault>, String),
+    /// What a component kept up to a batch is committed.
+    Commit {
+        component: u32,
+        number: u64,
+    },
     /// A message that a fault holds up.
     Late {
         topic: TopicId,
@@ -171,12 +178,16 @@ impl Injections {
 
     /// True if the run may end because no work is left.
     pub(super) fn are_over(&self) -> bool {
-        self.holds == 0 && self.waiting.len() == self.faults
+        self.holds == 0 && self.waiting.len() == self.faults + self.commits
     }
 
     pub(super) fn clear(&mut self) {
         self.waiting.clear();
-        self.faults = 0;
+        (self.faults, self.commits) = (0, 0);
+    }
+
+    pub(super) fn commit_at(&mut self, when: u64, component: u32, number: u64) {
+        self.add(when, Due::Commit { component, number });
     }
 
     pub(super) fn hold_up(&mut self, when: u64, topic: TopicId, message: SharedMessage) {
@@ -204,6 +215,7 @@ impl Injections {
     fn add(&mut self, when: u64, due: Due) {
         self.count += 1;
         self.faults += usize::from(matches!(due, Due::Fault(..)));
+        self.commits += usize::from(matches!(due, Due::Commit { .. }));
         self.waiting.insert((when, self.count), due);
     }
 }
@@ -276,6 +288,13 @@ pub(super) fn add_fault(
     Ok(())
 }
 
+/// Batches of components, with their numbers, are committed.
+pub(super) fn add_commits(shared: &Shared, batches: &[(u32, u64)]) {
+    for (component, number) in batches {
+        add(shared, None, Due::Commit { component: *component, number: *number });
+    }
+}
+
 /// Queues an order, which was checked.
 pub(super) fn add_order(shared: &Shared, at: Option<Time>, order: PendingOrder) {
     add(shared, at, Due::Order(Box::new(order)));
@@ -333,6 +352,11 @@ impl Engine {
                     self.arrive(topic, message, now);
                     // It has to be read before the run ends.
                     delivered |= self.injections.are_over();
+                }
+                Due::Commit { component, number } => {
+                    self.injections.commits -= 1;
+                    self.commit(component, number, now);
+                    self.end_if_done(now);
                 }
                 Due::Settled => self.end_if_done(now),
             }

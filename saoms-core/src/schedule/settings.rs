@@ -32,6 +32,9 @@ pub struct Settings {
     /// Number of journal records in memory, divided evenly among the components; each keeps its newest 128 at least.
     /// Records that are older are overwritten and counted.
     pub journal: usize,
+    /// In virtual time, the time from the end of an execution until what it [keeps](saoms_api::Context::keep) is
+    /// committed, as a disk takes it.
+    pub commit_delay: Duration,
     /// Faults that are put into the run on purpose.
     pub faults: Vec<TimedFault>,
 }
@@ -60,6 +63,7 @@ impl Default for Settings {
             virtual_watchdog: Duration::from_secs(10),
             quiet: Duration::from_secs(60),
             journal: 65_536,
+            commit_delay: Duration::from_millis(5),
             faults: Vec::new(),
         }
     }

@@ -1,5 +1,6 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use saoms_api::Time;
@@ -17,6 +18,7 @@ use crate::journal::RecordQueue;
 use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;
 use crate::status::summaries;
+use crate::store::StoreQueue;
 
 /// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while
 /// component code runs or a thread sleeps.
@@ -43,6 +45,9 @@ pub(super) struct Shared {
     /// Gate at which the thread that waits for the end sleeps.
     pub(super) end: Gate,
     pub(super) pulse: Pulse,
+    /// Where components keep what is to outlive the program, and the thread that writes it.
+    pub(super) store: OnceLock<Arc<StoreQueue>>,
+    pub(super) store_thread: Mutex<Option<JoinHandle<()>>>,
     /// Signals work for the worker threads, or the end of the run.
     pub(super) work: Condvar,
     /// True if the end was requested, and whether an operator did so.
@@ -85,6 +90,8 @@ impl Shared {
             spare: Gate::default(),
             end: Gate::default(),
             pulse: Pulse::default(),
+            store: OnceLock::new(),
+            store_thread: Mutex::default(),
             work: Condvar::new(),
             stop: AtomicBool::new(false),
             is_down: AtomicBool::new(false),
@@ -213,10 +220,10 @@ impl Shared {
         self.events.put(RunEvent { time, component: None, what: Occurrence::Note { level, text } });
     }
 
-    /// Queues an alert of the fleet as a whole.
-    pub(super) fn alert(&self, kind: &str, subject: &str, text: String) {
+    /// Queues an alert of the fleet as a whole; without a text, that it is over.
+    pub(super) fn alert(&self, kind: &str, subject: &str, text: Option<String>) {
         let time = Time::from_nanos(self.clock.now());
-        let what = Occurrence::Alert { kind: kind.into(), subject: subject.into(), text: Some(text) };
+        let what = Occurrence::Alert { kind: kind.into(), subject: subject.into(), text };
         self.events.put(RunEvent { time, component: None, what });
     }
 

@@ -129,8 +129,11 @@ fn hardware_stops_while_another_component_hangs_in_its_initialization() {
     let assembly = assembly("A wheel period=10 wire=estop-start\nB late period=10");
     let (handles, handle) = mpsc::channel();
     let starting = thread::spawn(move || {
-        RunningFleet::start_with(assembly, real(60_000), Vec::new(), |handle| handles.send(handle.clone()).unwrap())
-            .unwrap()
+        RunningFleet::start_with(assembly, real(60_000), Vec::new(), |handle| {
+            handles.send(handle.clone()).unwrap();
+            Ok(())
+        })
+        .unwrap()
     });
     let handle = handle.recv().unwrap();
     Wire::of("late").wait_for("initializes");

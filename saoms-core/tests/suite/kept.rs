@@ -43,8 +43,7 @@ impl Component for Counter {
     type Properties = Own<Self>;
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let (number, bytes) = context.kept();
-        let line = format!("starts, kept {number}: {bytes:?}");
+        let line = format!("starts, kept {:?}", context.kept());
         context.info(line);
         Ok(())
     }
@@ -52,14 +51,15 @@ impl Component for Counter {
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.count += self.step;
         let now = format!(" {} ", context.now().as_nanos() / 1_000_000);
-        context.keep(&[0])?;
-        let number = context.keep(&self.count.to_le_bytes()[..1])?;
+        context.keep(1, &[0])?;
+        context.keep(1, &self.count.to_le_bytes()[..1])?;
+        context.keep(2, &[7, 7][..self.count as usize % 3])?;
         context.send(&self.words, Words { text: format!("{}", self.count) })?;
         if self.fails.contains(&now) {
             return Err("it was told to".into());
         }
         assert!(!self.panics.contains(&now), "it was told to"); // PANIC
-        context.info(format!("counts {}, keeps {number}, kept {}", self.count, context.kept().0));
+        context.info(format!("counts {}, kept {:?}", self.count, context.kept()));
         Ok(())
     }
 
@@ -150,27 +150,27 @@ fn a_restart_goes_on_from_the_last_execution_that_did_not_fail() {
         "A counter period=10 restart=5/3 fails=[ 20 ] panics=[ 35 ]
          B actor period=5 subscribes=TALK each=[hear]",
         50,
-        "[0.000 s] A: starts, kept 0: []
-         [0.000 s] A: counts 1, keeps 2, kept 0
-         [0.000 s] B: hears [1]
-         [0.005 s] B: hears []
-         [0.010 s] A: counts 2, keeps 4, kept 2
-         [0.010 s] B: hears [2]
-         [0.015 s] B: hears []
+        "[0.000 s] A: starts, kept {}
+         [0.000 s] A: counts 1, kept {}
+         [0.000 s] B: hears []
+         [0.005 s] B: hears [1]
+         [0.010 s] A: counts 2, kept {1: [1], 2: [7]}
+         [0.010 s] B: hears []
+         [0.015 s] B: hears [2]
          [0.020 s] A: failed and is restarted in 5ms: it was told to (messages of this execution that are not sent: 1)
          [0.020 s] B: hears []
-         [0.025 s] A: starts, kept 4: [2]
+         [0.025 s] A: starts, kept {1: [2], 2: [7, 7]}
          [0.025 s] A: restarted (1), and continues
-         [0.025 s] A: counts 3, keeps 6, kept 4
-         [0.025 s] B: hears [3]
-         [0.030 s] B: hears []
+         [0.025 s] A: counts 3, kept {1: [2], 2: [7, 7]}
+         [0.025 s] B: hears []
+         [0.030 s] B: hears [3]
          [0.035 s] A: failed and is restarted in 10ms: panicked at saoms-core/tests/suite/kept.rs:LINE:9: it was told to (messages of this execution that are not sent: 1)
          [0.035 s] B: hears []
          [0.040 s] B: hears []
-         [0.045 s] A: starts, kept 6: [3]
+         [0.045 s] A: starts, kept {1: [3]}
          [0.045 s] A: restarted (2), and continues
-         [0.045 s] A: counts 4, keeps 8, kept 6
-         [0.045 s] B: hears [4]
+         [0.045 s] A: counts 4, kept {1: [3]}
+         [0.045 s] B: hears []
          Elapsed after 0.05 s",
     );
 }
@@ -180,14 +180,14 @@ fn a_state_that_cannot_be_restored_is_forgotten() {
     check(
         "A counter period=10 restart=5/3 fails=[ 10 ] forgets=true",
         30,
-        "[0.000 s] A: starts, kept 0: []
-         [0.000 s] A: counts 1, keeps 2, kept 0
+        "[0.000 s] A: starts, kept {}
+         [0.000 s] A: counts 1, kept {}
          [0.010 s] A: failed and is restarted in 5ms: it was told to (messages of this execution that are not sent: 1)
-         [0.015 s] A: starts, kept 2: [1]
+         [0.015 s] A: starts, kept {1: [1], 2: [7]}
          [0.015 s] A: failed and is restarted in 10ms: could not start: could not continue with its saved state: it has no memory
-         [0.025 s] A: starts, kept 2: [1]
+         [0.025 s] A: starts, kept {1: [1], 2: [7]}
          [0.025 s] A: restarted (2)
-         [0.025 s] A: counts 1, keeps 4, kept 2
+         [0.025 s] A: counts 1, kept {1: [1], 2: [7]}
          Elapsed after 0.03 s",
     );
 }
@@ -198,11 +198,11 @@ fn who_is_scheduled_anew_begins_anew_and_knows_what_it_kept() {
         "A counter period=10 restart=5/3
          B actor period=100 delay=15 task=A each=[unschedule; schedule]",
         20,
-        "[0.000 s] A: starts, kept 0: []
-         [0.000 s] A: counts 1, keeps 2, kept 0
-         [0.010 s] A: counts 2, keeps 4, kept 2
-         [0.015 s] A: starts, kept 4: [2]
-         [0.015 s] A: counts 1, keeps 6, kept 4
+        "[0.000 s] A: starts, kept {}
+         [0.000 s] A: counts 1, kept {}
+         [0.010 s] A: counts 2, kept {1: [1], 2: [7]}
+         [0.015 s] A: starts, kept {1: [2], 2: [7, 7]}
+         [0.015 s] A: counts 1, kept {1: [2], 2: [7, 7]}
          Elapsed after 0.02 s",
     );
 }

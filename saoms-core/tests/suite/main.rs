@@ -30,5 +30,6 @@ mod standstill;
 mod start;
 mod status;
 mod stop;
+mod store;
 mod tasks;
 mod trace;

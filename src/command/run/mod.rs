@@ -13,6 +13,7 @@ mod outputs;
 mod picture_file;
 mod reload;
 mod report_file;
+mod state;
 mod status_line;
 mod summary;
 mod timeline_file;
@@ -120,6 +121,11 @@ pub(crate) struct RunArguments {
     /// wrong line is an error before anything starts
     #[arg(long, value_name = "FILE")]
     pub(crate) faults: Option<PathBuf>,
+
+    /// Keep in this folder what has to outlive the program, such as the grants of zones: the same command goes on from
+    /// it after a crash or a power failure. The folder is made if it is missing; no other program may use it meanwhile
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) state: Option<PathBuf>,
 
     /// Hold the run to the invariants of its components, as `saoms simulate` does: violations are reported, and the
     /// exit code is 1 then
@@ -241,6 +247,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
             }
         }
     }
+    let store = match state::open(arguments) {
+        Ok(store) => store,
+        Err(exit) => return exit,
+    };
     let paths = PictureRegistration::linked("paths");
     if arguments.paths.is_some() && paths.is_none() {
         eprint("error: no component class of this program draws paths\n");
@@ -298,6 +308,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     signals.starts(assembly.run.hangup);
     let mut server = None;
     let before = |handle: &Handle| {
+        store.map_or(Ok(()), |store| handle.use_store(store))?;
         signals.reaches(handle);
         delivery.start(handle);
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
@@ -305,6 +316,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
         server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts));
+        Ok(())
     };
     let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {
         Ok(fleet) => fleet,

@@ -18,6 +18,7 @@ mod report;
 mod schema;
 mod service;
 mod simulate;
+mod state;
 mod trust;
 mod usage;
 mod why;

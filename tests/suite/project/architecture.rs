@@ -30,7 +30,7 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "crate::",
         &[
             "hash", "plugin", "assemble", "bus", "journal", "adaptation", "report", "status", "observe", "fault",
-            "schedule",
+            "store", "schedule",
         ],
     ),
 ];

@@ -1,6 +1,7 @@
 //! A host that a test can look into.
 
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
@@ -138,12 +139,12 @@ impl Host for FakeHost {
         &[]
     }
 
-    fn keep(&mut self, _: &[u8]) -> Result<u64, Failure> {
-        Ok(1)
+    fn keep(&mut self, _: u64, _: &[u8]) -> Result<(), Failure> {
+        Ok(())
     }
 
-    fn kept(&self) -> (u64, &[u8]) {
-        (0, &[])
+    fn kept(&self) -> BTreeMap<u64, &[u8]> {
+        BTreeMap::new()
     }
 
     fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {

@@ -65,7 +65,7 @@ impl RobotKnowledge {
     pub(in crate::robot) fn leave_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let (charger, begun) = (self.charge_block, self.begun_blocks());
         let Some(zones) = &mut self.zones else { return Ok(()) };
-        zones.stay(begun);
+        zones.leave(begun);
         zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0 })
     }
 

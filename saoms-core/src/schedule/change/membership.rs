@@ -5,7 +5,8 @@ use saoms_lang::assembly::ComponentSpec;
 use super::takeover::{Outgoing, Predecessor, Takeover};
 use crate::journal::ComponentName;
 use crate::observe::Occurrence;
-use crate::schedule::component::body::{Body, KeptBytes};
+use crate::schedule::component::body::Body;
+use crate::schedule::component::stored::Stored;
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::engine::slot::{NEVER, PendingRequest, Slot, SlotState, TaskPolicy};
 use crate::schedule::engine::trace::TraceStep;
@@ -46,14 +47,15 @@ impl Engine {
     ) {
         let mut names = Vec::new();
         for (spec, &number) in specs.zip(numbers) {
+            let stored = self.stored_of(&spec.path);
             if let Some(slot) = self.slots.get_mut(number as usize) {
-                slot.revive(spec);
+                slot.revive(spec, stored);
                 continue;
             }
             if let Some(records) = &self.records {
                 records.join(ComponentName::of(&spec), self.phase != RunPhase::Starting);
             }
-            let slot = Slot::new(number, spec);
+            let slot = Slot::new(number, spec, stored);
             names.push(Arc::clone(&slot.name));
             self.numbers.insert(Arc::clone(&slot.name), number);
             self.slots.push(slot);
@@ -224,7 +226,7 @@ impl Slot {
     }
 
     /// Reuses the slot of a removed component that returns.
-    pub(super) fn revive(&mut self, spec: Arc<ComponentSpec>) {
+    pub(super) fn revive(&mut self, spec: Arc<ComponentSpec>, stored: Stored) {
         self.renew(Arc::clone(&spec));
         (self.state, self.held) = (SlotState::Idle, true);
         (self.due, self.last_due, self.until) = (NEVER, None, NEVER);
@@ -232,7 +234,7 @@ impl Slot {
         if let Some(body) = &mut self.body {
             (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);
             body.part.lasting.forget();
-            body.part.kept_bytes = KeptBytes::default();
+            body.part.stored = stored;
         }
     }
 }

@@ -113,7 +113,7 @@ impl Body {
         let mut body = Body::new(part.index, spec, Arc::clone(&part.name), part.period, Arc::clone(&part.cancelled));
         body.part.emergency = Arc::clone(&part.emergency);
         body.part.chance = part.chance.clone();
-        body.part.kept_bytes = part.kept_bytes.clone();
+        body.part.stored = part.stored.clone();
         (body.part.now, body.part.due, body.part.execution) = (part.now, part.due, part.execution);
         Box::new(body)
     }
@@ -229,7 +229,7 @@ impl Endpoints {
         part.schemas.append(&mut successor.schemas);
         part.outbox.append(&mut successor.outbox);
         part.vote = successor.vote.take();
-        part.bytes_to_keep = successor.bytes_to_keep.take();
+        part.to_keep = std::mem::take(&mut successor.to_keep);
         part.lasting.forget_state();
         part.chance = successor.chance.clone();
         part.held = true;

@@ -262,6 +262,7 @@ impl<'a> Change<'a> {
         let result = body.perform(self.shared, Job::Shutdown);
         let mut engine = self.shared.lock();
         body.part.outbox.clear();
+        body.part.to_keep.clear();
         let is_told = body.part.told.take().is_some();
         engine.put_back(number, body);
         if let Err(failure) = result
@@ -316,6 +317,7 @@ impl<'a> Change<'a> {
                 engine.leave_topics(number, now);
                 engine.forget_vote(number, now);
                 engine.forget(number);
+                engine.forget_stored(number, now);
             }
         }
         engine.takers = (None, engine.takers.1 + 1);
@@ -341,6 +343,7 @@ impl<'a> Change<'a> {
         let mut engine = self.shared.lock();
         engine.finish(number, body, Job::Shutdown, result, now, now);
         engine.forget(number);
+        engine.forget_stored(number, now);
         self.shared.release(engine);
     }
 }

@@ -8,6 +8,7 @@ use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Time};
 use super::host::ComponentHost;
 use super::lasting::Lasting;
 use super::spent::Spent;
+use super::stored::{Stored, StoredChange};
 use super::unheard::Unheard;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFault;
@@ -54,9 +55,9 @@ pub(crate) struct Part {
     pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
     /// True if there is an event in the outbox.
     pub(crate) has_raised: bool,
-    /// Bytes that the present code keeps once it has finished, and the newest ones that are kept.
-    pub(crate) bytes_to_keep: Option<KeptBytes>,
-    pub(crate) kept_bytes: KeptBytes,
+    /// What the present code keeps once it has finished, and what is kept.
+    pub(crate) to_keep: Vec<StoredChange>,
+    pub(crate) stored: Stored,
     /// What a restart goes on from.
     pub(crate) lasting: Lasting,
     /// Bytes in the outbox from code of libraries.
@@ -101,13 +102,6 @@ pub(crate) struct Part {
     pub(crate) spec: Arc<ComponentSpec>,
     /// True if the instance is part of a change that is not committed: its messages are held back.
     pub(crate) held: bool,
-}
-
-/// Bytes that a component keeps beyond its crash.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct KeptBytes {
-    pub(crate) number: u64,
-    pub(crate) bytes: Vec<u8>,
 }
 
 /// Jobs of a component.
@@ -164,8 +158,8 @@ impl Body {
             kept: Vec::new(),
             outbox: Vec::new(),
             has_raised: false,
-            bytes_to_keep: None,
-            kept_bytes: KeptBytes::default(),
+            to_keep: Vec::new(),
+            stored: Stored::default(),
             lasting: Lasting::default(),
             sent_bytes: 0,
             spent: Spent::default(),

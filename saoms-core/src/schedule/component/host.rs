@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +14,7 @@ use saoms_api::{
     StopFunction, Time, Value, Work,
 };
 
-use super::body::{KeptBytes, Part, subject};
+use super::body::{Part, subject};
 use super::declared::TopicUse;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
@@ -309,18 +310,27 @@ impl Host for ComponentHost<'_> {
         self.part.departed.get(subscription as usize).map_or(&[], Vec::as_slice)
     }
 
-    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
-        if bytes.len() > saoms_abi::MAX_BYTES {
-            let most = saoms_abi::MAX_BYTES >> 20;
-            return Err(Failure::new(format!("{} bytes are more than a component can keep: {most} MiB", bytes.len())));
+    fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
+        if let Some(refusal) = self.shared.store.get().and_then(|queue| queue.refusal()) {
+            return Err(Failure::new(refusal));
         }
-        let before = self.part.bytes_to_keep.as_ref().unwrap_or(&self.part.kept_bytes).number;
-        self.part.bytes_to_keep = Some(KeptBytes { number: before + 1, bytes: bytes.to_vec() });
-        Ok(before + 1)
+        let part = &mut *self.part;
+        let waiting = part.to_keep.iter().filter_map(|(_, bytes)| bytes.as_ref());
+        let size = waiting.map(|bytes| bytes.len()).sum::<usize>() + part.stored.size() + bytes.len();
+        if size > saoms_abi::MAX_BYTES {
+            let most = saoms_abi::MAX_BYTES >> 20;
+            return Err(Failure::new(format!("{size} bytes are more than a component can keep: {most} MiB")));
+        }
+        part.to_keep.push((key, (!bytes.is_empty()).then(|| Arc::from(bytes))));
+        Ok(())
     }
 
-    fn kept(&self) -> (u64, &[u8]) {
-        (self.part.kept_bytes.number, &self.part.kept_bytes.bytes)
+    fn kept(&self) -> BTreeMap<u64, &[u8]> {
+        self.part.stored.entries().iter().map(|(key, bytes)| (*key, &**bytes)).collect()
+    }
+
+    fn kept_by_earlier_program(&self) -> bool {
+        self.part.stored.is_earlier()
     }
 
     fn goes_on(&self) -> bool {

@@ -7,4 +7,5 @@ mod host;
 pub(super) mod lasting;
 pub(super) mod library;
 pub(super) mod spent;
+pub(super) mod stored;
 mod unheard;

@@ -3,6 +3,7 @@
 
 pub(super) mod pulse;
 mod real;
+pub(super) mod store_writer;
 mod supervise;
 #[cfg(test)]
 mod tests;

@@ -36,24 +36,42 @@ impl Engine {
     #[inline]
     pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.record(part, now);
-        if let Some(kept) = part.bytes_to_keep.take() {
-            part.kept_bytes = kept;
+        if !part.to_keep.is_empty() {
+            self.keep(part, now);
         }
         if part.outbox.is_empty() {
             return;
         }
         part.sent_bytes = 0;
+        let settles = std::mem::take(&mut part.has_raised) || self.says_last_words(part);
+        if self.slots[part.index as usize].uncommitted.is_empty() {
+            self.send_all(part.index, &part.name, part.outbox.drain(..), settles, now);
+        } else {
+            self.hold_back(part, settles);
+        }
+    }
+
+    /// Sends messages of a component. With `settles` the run does not end before they are read.
+    #[inline]
+    pub(super) fn send_all(
+        &mut self,
+        index: u32,
+        name: &Arc<str>,
+        messages: impl ExactSizeIterator<Item = (TopicId, SharedMessage)>,
+        settles: bool,
+        now: u64,
+    ) {
         self.standstill.note_effect(now);
-        if (std::mem::take(&mut part.has_raised) || self.says_last_words(part)) && self.phase == RunPhase::Running {
+        if settles && self.phase == RunPhase::Running {
             self.settle(now);
         }
-        self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
-        for (topic, message) in part.outbox.drain(..) {
+        self.slots[index as usize].statistics.sent += messages.len() as u64;
+        for (topic, message) in messages {
             if let Some(trace) = &mut self.trace {
-                trace.message(now, part.index, self.bus.name_hash(topic), &message);
+                trace.message(now, index, self.bus.name_hash(topic), &message);
             }
             if let Some(observers) = self.bus.observers(topic) {
-                let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(&part.name));
+                let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(name));
                 let sent = SentMessage { topic, component, message: message.clone() };
                 self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
             }

@@ -59,7 +59,8 @@ impl Engine {
         self.record(part, now);
         let unsent = part.outbox.len();
         part.outbox.clear();
-        part.bytes_to_keep = None;
+        part.to_keep.clear();
+        let uncommitted = self.take_back_uncommitted(part);
         part.sent_bytes = 0;
         part.vote = None;
         let doing = match job {
@@ -71,6 +72,9 @@ impl Engine {
         let mut message = format!("{doing}{}", with_library(spec, failure));
         if unsent > 0 {
             message.push_str(&format!(" (messages of this execution that are not sent: {unsent})"));
+        }
+        if uncommitted > 0 {
+            message.push_str(&format!(" (messages that waited for what it kept, and are not sent: {uncommitted})"));
         }
         self.step(now, part.index, TraceStep::Failed);
         self.slots[part.index as usize].statistics.failures += 1;

@@ -1,6 +1,7 @@
 //! The state of a run and every change to it. The engine runs no component code and starts no thread.
 
 mod busy;
+pub(super) mod commit;
 mod delivery;
 pub(super) mod ending;
 mod execution;
@@ -24,6 +25,7 @@ use std::sync::atomic::AtomicU64;
 
 use saoms_api::{Failure, Time};
 
+use self::commit::{Commits, LastCommits};
 use self::ending::EndCause;
 use self::queue::Queue;
 use self::slot::{NEVER, Slot, SlotState};
@@ -44,6 +46,7 @@ use crate::bus::Bus;
 use crate::fault::FaultPlay;
 use crate::journal::{OutsideRing, RecordQueue};
 use crate::observe::{Notification, Occurrence, RunEvent};
+use crate::store::Contents;
 
 /// The state of a run: due times, states of components, topics. It runs no component code itself; a driving thread
 /// takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the
@@ -90,6 +93,16 @@ pub(crate) struct Engine {
     /// Counter of the journal's records.
     pub(crate) record_ids: Arc<AtomicU64>,
     pub(crate) faults: FaultPlay,
+    /// When what components keep is committed, and what was kept by an earlier program.
+    pub(crate) commits: Commits,
+    /// Executions that kept something; those of them that are not committed; and how far the end of the run waits for
+    /// them.
+    pub(crate) batches: u64,
+    pub(crate) uncommitted: usize,
+    pub(crate) last_commits: LastCommits,
+    pub(crate) found: Contents,
+    /// Messages that are never sent, because what they depend on cannot be committed.
+    pub(crate) unsent: u64,
     /// The takers of events since the last change of the fleet, once somebody asked for them; the number of changes.
     pub(crate) takers: (Option<Arc<Takers>>, u64),
     /// The components that say who they are in messages, once somebody asked for them since that change.
@@ -193,6 +206,15 @@ impl Engine {
             with_hardware: Vec::new(),
             record_ids: Arc::default(),
             faults: FaultPlay::new(settings.seed),
+            commits: match (settings.clock, nanos(settings.commit_delay)) {
+                (ClockKind::Real, _) | (ClockKind::Virtual, 0) => Commits::AtOnce,
+                (ClockKind::Virtual, delay) => Commits::After(delay),
+            },
+            batches: 0,
+            uncommitted: 0,
+            last_commits: LastCommits::None,
+            found: Contents::default(),
+            unsent: 0,
             takers: (None, 0),
             speakers: None,
             publishers: None,

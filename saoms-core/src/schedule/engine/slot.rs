@@ -1,11 +1,14 @@
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use super::commit::Uncommitted;
 use super::overrun::{self, Decision};
 use crate::journal::Ring;
 use crate::report::Lateness;
 use crate::schedule::component::body::Body;
+use crate::schedule::component::stored::Stored;
 use crate::schedule::settings::nanos;
 use crate::schedule::stop::hears_stops;
 use crate::status::Description;
@@ -72,6 +75,8 @@ pub(crate) struct Slot {
     /// Its last answer.
     pub(crate) described: Option<Arc<Description>>,
     pub(crate) statistics: Statistics,
+    /// Executions that kept something which is not committed.
+    pub(crate) uncommitted: VecDeque<Uncommitted>,
     pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
     pub(crate) overrun_failure: Option<String>,
@@ -226,13 +231,14 @@ pub(crate) struct Statistics {
 }
 
 impl Slot {
-    pub(crate) fn new(index: u32, spec: Arc<ComponentSpec>) -> Slot {
+    pub(crate) fn new(index: u32, spec: Arc<ComponentSpec>, stored: Stored) -> Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
         let policy = TaskPolicy::of(&spec);
         let cancelled = Arc::new(AtomicBool::new(false));
         let mut body = Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
         let emergency = Arc::new(AtomicBool::new(false));
         body.part.emergency = Arc::clone(&emergency);
+        body.part.stored = stored;
         Slot {
             body: Some(Box::new(body)),
             stopped: false,
@@ -269,6 +275,7 @@ impl Slot {
             asked_to_wait: false,
             described: None,
             statistics: Statistics::default(),
+            uncommitted: VecDeque::new(),
             journal: Ring::default(),
             overrun_failure: None,
             name,

@@ -130,7 +130,8 @@ impl Engine {
 
     fn judge_standstill(&mut self, now: u64) {
         let since = self.standstill.last_effect;
-        let is_certain = self.injections.are_over() && self.slots.iter().all(|slot| !slot.may_act(since));
+        let is_certain =
+            self.injections.are_over() && self.uncommitted == 0 && self.slots.iter().all(|slot| !slot.may_act(since));
         if !is_certain && self.standstill.patience < LONG {
             return;
         }

@@ -1,5 +1,6 @@
 use saoms_api::Work;
 
+use super::commit::LastCommits;
 use super::ending::EndCause;
 use super::trace::TraceStep;
 use super::{Engine, RunPhase};
@@ -56,14 +57,18 @@ impl Engine {
         self.votes.voters += usize::from(before.is_none());
         match left {
             false => self.votes.done += 1,
-            true => self.votes.done -= usize::from(before.is_some()),
+            true => {
+                self.votes.done -= usize::from(before.is_some());
+                self.last_commits = LastCommits::None;
+            }
         }
         self.step(now, index, TraceStep::Voted);
     }
 
     /// Ends the run if all voters see no work left, and none can come from outside.
     pub(crate) fn end_if_done(&mut self, now: u64) {
-        if self.votes.voters > 0 && self.votes.done == self.votes.voters && self.injections.are_over() {
+        let is_done = self.votes.voters > 0 && self.votes.done == self.votes.voters;
+        if is_done && self.injections.are_over() && self.commits_are_over() {
             self.begin_stop(EndCause::Done, now);
         }
     }

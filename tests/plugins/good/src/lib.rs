@@ -220,7 +220,7 @@ impl Component for Keeper {
     type Properties = saoms_api::Own<Self>;
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.has_failed = context.kept().0 > 0;
+        self.has_failed = !context.kept().is_empty();
         context.info(format!("kept {:?}", context.kept()));
         Ok(())
     }
@@ -230,7 +230,8 @@ impl Component for Keeper {
         if self.count == self.fails_at && !self.has_failed {
             return Err("once".into());
         }
-        context.keep(&[self.count as u8, 0xff])?;
+        context.keep(7, &[self.count as u8, 0xff])?;
+        context.keep(8, &[])?;
         context.info(format!("counts {}", self.count));
         Ok(())
     }

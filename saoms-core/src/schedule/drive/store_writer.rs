@@ -1,0 +1,84 @@
+//! The thread that puts on the disk what components keep.
+
+use std::io;
+use std::sync::{Arc, PoisonError};
+
+use saoms_api::Level;
+
+use crate::schedule::inject::add_commits;
+use crate::schedule::os::thread::start_thread;
+use crate::schedule::shared::Shared;
+use crate::store::{Store, StoreEvents, StoreQueue, write};
+
+/// The kind and the subject of alerts about the store.
+const ALERT: (&str, &str) = ("file", "state");
+
+/// Tells the fleet what the thread has done.
+struct ToFleet(Arc<Shared>);
+
+impl StoreEvents for ToFleet {
+    fn committed(&self, batches: &[(u32, u64)]) {
+        add_commits(&self.0, batches);
+    }
+
+    fn is_full(&self, text: Option<String>) {
+        self.0.alert(ALERT.0, ALERT.1, text);
+    }
+
+    fn complain(&self, text: String) {
+        self.0.note(Level::Warning, text);
+    }
+
+    fn failed(&self, text: &str) {
+        let mut engine = self.0.lock();
+        engine.store_failed(text);
+        self.0.release(engine);
+        self.0.alert(ALERT.0, ALERT.1, Some(text.to_owned()));
+    }
+}
+
+/// Has components keep in a store what they keep.
+///
+/// # Errors
+/// The system cannot create a thread.
+pub(crate) fn use_store(shared: &Arc<Shared>, store: Store) -> io::Result<()> {
+    let queue: Arc<StoreQueue> = Arc::default();
+    let found = store.contents().clone();
+    if let Some(repaired) = store.repaired() {
+        shared.note(Level::Warning, repaired.to_owned());
+    }
+    let (for_thread, events) = (Arc::clone(&queue), ToFleet(Arc::clone(shared)));
+    let thread = start_thread("saoms-store", move || write(store, &for_thread, &events))?;
+    *shared.store_thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
+    shared.lock().use_store(found, Arc::clone(&queue));
+    // A fleet has one store: it is set once, before the components initialize.
+    let _ = shared.store.set(queue);
+    Ok(())
+}
+
+/// Tells of what a store has of components that the fleet does not have: it stays there.
+pub(crate) fn note_unused(shared: &Shared) {
+    let unused: Vec<String> = {
+        let engine = shared.lock();
+        let is_unknown = |name: &&Arc<str>| !engine.numbers.contains_key(&***name);
+        engine.found.components().filter(is_unknown).map(|name| format!("`{name}`")).collect()
+    };
+    if !unused.is_empty() {
+        let text = format!(
+            "the state folder has what {} kept, and the fleet has no such component: it stays there",
+            unused.join(", ")
+        );
+        shared.note(Level::Warning, text);
+    }
+}
+
+/// Waits until all that was kept is on the disk, and closes the store.
+pub(crate) fn finish(shared: &Shared) {
+    let Some(queue) = shared.store.get() else { return };
+    queue.close();
+    let thread = shared.store_thread.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(thread) = thread {
+        // A panic was written to standard error.
+        let _ = thread.join();
+    }
+}

@@ -1,0 +1,163 @@
+//! What components keep: it is committed, and only then the messages leave that may depend on it.
+
+use std::sync::Arc;
+
+use saoms_api::host::{SharedMessage, TopicKind};
+
+use super::{Engine, RunPhase};
+use crate::bus::TopicId;
+use crate::schedule::component::body::Part;
+use crate::schedule::component::stored::{Stored, StoredChange};
+use crate::store::{Batch, Change, Contents, StoreQueue};
+
+/// When what a component keeps is committed.
+#[derive(Debug)]
+pub(crate) enum Commits {
+    /// At once: it is in memory.
+    AtOnce,
+    /// After this number of nanoseconds, in memory, as if it were on a disk: in virtual time.
+    After(u64),
+    /// When it is on the disk.
+    InStore(Arc<StoreQueue>),
+}
+
+/// What a component kept in one execution, which is not committed yet.
+#[derive(Debug)]
+pub(crate) struct Uncommitted {
+    number: u64,
+    /// Changes that take it back.
+    before: Vec<StoredChange>,
+    /// Messages of that execution, and of later ones that kept nothing.
+    messages: Vec<(TopicId, SharedMessage)>,
+    /// True if the run does not end before the messages are read.
+    settles: bool,
+}
+
+/// How far a run whose work is done waits for commits. A component may keep something in each of its executions, so
+/// that some commit is always on its way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum LastCommits {
+    /// The work is not done, or nothing was on its way when it was.
+    #[default]
+    None,
+    /// Those up to this number, which were on their way then.
+    UpTo(u64),
+    /// They are over.
+    Over,
+}
+
+impl Engine {
+    /// Keeps what an execution has kept.
+    #[cold]
+    pub(super) fn keep(&mut self, part: &mut Part, now: u64) {
+        let Part { to_keep, stored, index, name, outbox, .. } = part;
+        let change =
+            |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
+        let changes: Vec<Change> = to_keep.iter().map(change).collect();
+        let before: Vec<StoredChange> = to_keep.drain(..).map(|change| stored.change(change)).collect();
+        self.batches += 1;
+        let number = self.batches;
+        match &self.commits {
+            Commits::AtOnce => return,
+            Commits::After(_) if self.phase != RunPhase::Running => return,
+            Commits::After(delay) => self.injections.commit_at(now.saturating_add(*delay), *index, number),
+            Commits::InStore(queue) if queue.has_failed() => {
+                // It happened since this execution began. The next one hears of it.
+                self.unsent += outbox.len() as u64;
+                return outbox.clear();
+            }
+            Commits::InStore(queue) => queue.put(Batch { index: *index, number, changes }),
+        }
+        self.look_at = self.injections.earliest().map_or(self.look_at, |when| when.min(self.look_at));
+        let uncommitted = Uncommitted { number, before, messages: Vec::new(), settles: false };
+        self.slots[*index as usize].uncommitted.push_back(uncommitted);
+        self.uncommitted += 1;
+    }
+
+    /// Lets the messages of an execution wait until what was kept before is committed.
+    #[cold]
+    pub(super) fn hold_back(&mut self, part: &mut Part, settles: bool) {
+        if let Some(last) = self.slots[part.index as usize].uncommitted.back_mut() {
+            last.settles |= settles;
+            last.messages.append(&mut part.outbox);
+        }
+    }
+
+    /// What a component kept up to this batch is committed: the messages leave that waited for it.
+    #[cold]
+    pub(crate) fn commit(&mut self, index: u32, number: u64, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        let name = Arc::clone(&slot.name);
+        let mut has_events = false;
+        while let Some(first) = self.slots[index as usize].uncommitted.pop_front_if(|first| first.number <= number) {
+            self.uncommitted -= 1;
+            has_events |= first.messages.iter().any(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event);
+            if !first.messages.is_empty() {
+                self.send_all(index, &name, first.messages.into_iter(), first.settles, now);
+            }
+        }
+        if matches!(self.last_commits, LastCommits::UpTo(last) if last <= number) {
+            self.last_commits = LastCommits::Over;
+            if has_events && self.phase == RunPhase::Running {
+                // They have to be read before the run ends.
+                self.settle(now);
+            }
+        }
+    }
+
+    /// True if a run whose work is done need not wait for commits.
+    pub(super) fn commits_are_over(&mut self) -> bool {
+        match self.last_commits {
+            LastCommits::None if self.uncommitted > 0 => self.last_commits = LastCommits::UpTo(self.batches),
+            LastCommits::UpTo(_) => {}
+            LastCommits::None | LastCommits::Over => return true,
+        }
+        false
+    }
+
+    /// In virtual time, a component that fails and does not go on from its memory has lost what was not committed.
+    /// Gives the number of messages that are lost with it.
+    pub(super) fn take_back_uncommitted(&mut self, part: &mut Part) -> usize {
+        let slot = &mut self.slots[part.index as usize];
+        if slot.uncommitted.is_empty() || !matches!(self.commits, Commits::After(_)) || part.lasting.will_go_on() {
+            return 0;
+        }
+        let mut messages = 0;
+        self.uncommitted -= slot.uncommitted.len();
+        for Uncommitted { before, messages: unsent, .. } in slot.uncommitted.drain(..).rev() {
+            messages += unsent.len();
+            before.into_iter().rev().for_each(|change| drop(part.stored.change(change)));
+        }
+        messages
+    }
+
+    /// Nothing will be committed any more: what waited for it is lost.
+    pub(crate) fn store_failed(&mut self, text: &str) {
+        for slot in &mut self.slots {
+            self.unsent += slot.uncommitted.drain(..).map(|one| one.messages.len() as u64).sum::<u64>();
+        }
+        (self.uncommitted, self.last_commits) = (0, LastCommits::Over);
+        self.reasons.push(text.to_owned());
+    }
+
+    /// Removes what a component keeps that leaves the fleet.
+    pub(crate) fn forget_stored(&mut self, index: u32, now: u64) {
+        let Some(mut body) = self.slots[index as usize].body.take() else { return };
+        self.found.forget(&body.part.name);
+        body.part.to_keep = body.part.stored.entries().keys().map(|key| (*key, None)).collect();
+        if !body.part.to_keep.is_empty() {
+            self.keep(&mut body.part, now);
+        }
+        self.slots[index as usize].body = Some(body);
+    }
+
+    /// What a component keeps that joins the fleet.
+    pub(crate) fn stored_of(&self, name: &str) -> Stored {
+        self.found.of(name).map_or_else(Stored::default, |entries| Stored::new(entries.clone()))
+    }
+
+    /// Uses a store from now on: what it holds, and where more goes.
+    pub(crate) fn use_store(&mut self, found: Contents, queue: Arc<StoreQueue>) {
+        (self.found, self.commits) = (found, Commits::InStore(queue));
+    }
+}

@@ -1,0 +1,112 @@
+//! The folder of a store on a disk.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind, Write};
+use std::os::fd::AsRawFd;
+use std::path::{Path, PathBuf};
+
+use super::log::{LogFile, ReplaceError};
+use super::{StoreError, group};
+
+/// The log.
+pub(super) const LOG: &str = "store.log";
+/// A log that is being written anew.
+const NEW: &str = "store.new";
+/// The file that a program locks while it uses the folder.
+const LOCK: &str = "lock";
+
+/// A log in a folder that no other program uses.
+pub(super) struct DiskFile {
+    folder: PathBuf,
+    file: File,
+    /// Held as long as the log is open.
+    _lock: File,
+}
+
+impl DiskFile {
+    /// Opens the log of a folder, and makes both where they are missing. Gives what the log holds.
+    pub(super) fn open(folder: &Path) -> Result<(DiskFile, Vec<u8>), StoreError> {
+        let failed = |doing: &'static str, path: &Path| {
+            let path = path.to_owned();
+            move |error| StoreError::System { doing, path, error }
+        };
+        fs::create_dir_all(folder).map_err(failed("be made", folder))?;
+        let (log, lock) = (folder.join(LOG), folder.join(LOCK));
+        let is_new = !log.exists();
+        if is_new && !lock.exists() {
+            let mut entries = fs::read_dir(folder).map_err(failed("be read", folder))?;
+            if entries.next().is_some() {
+                return Err(StoreError::Foreign { folder: folder.to_owned() });
+            }
+        }
+        let mut options = OpenOptions::new();
+        options.create(true).truncate(false).read(true).write(true);
+        let locked = options.open(&lock).map_err(failed("be written", &lock))?;
+        match locked.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(StoreError::Used { folder: folder.to_owned() }),
+            Err(TryLockError::Error(error)) => return Err(failed("be locked", &lock)(error)),
+        }
+        let mut file =
+            OpenOptions::new().create(true).read(true).append(true).open(&log).map_err(failed("be written", &log))?;
+        let bytes = fs::read(&log).map_err(failed("be read", &log))?;
+        // A program that ended before it had written the first line had committed nothing.
+        if bytes.len() < group::HEAD.len() && group::HEAD.starts_with(&bytes) {
+            let begin = |file: &mut File| {
+                file.set_len(0)?;
+                file.write_all(group::HEAD)?;
+                file.sync_all()?;
+                sync_folder(folder)
+            };
+            begin(&mut file).map_err(failed("be written", &log))?;
+        }
+        Ok((DiskFile { folder: folder.to_owned(), file, _lock: locked }, bytes))
+    }
+}
+
+/// Waits until the names of a folder's files are on the disk.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+impl LogFile for DiskFile {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.file.write_all(bytes)
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        self.file.sync_data()
+    }
+
+    fn cut(&mut self, size: u64) -> io::Result<()> {
+        self.file.set_len(size)
+    }
+
+    fn reserve(&mut self, size: u64) -> io::Result<()> {
+        let size = libc::off_t::try_from(size).map_err(|_| ErrorKind::FileTooLarge)?;
+        // SAFETY: the descriptor is that of an open file; the call touches no memory of this program.
+        match unsafe { libc::fallocate(self.file.as_raw_fd(), libc::FALLOC_FL_KEEP_SIZE, 0, size) } {
+            0 => Ok(()),
+            _ => Err(io::Error::last_os_error()),
+        }
+    }
+
+    fn replace(&mut self, bytes: &[u8]) -> Result<(), ReplaceError> {
+        let (new, log) = (self.folder.join(NEW), self.folder.join(LOG));
+        let write = || {
+            let mut file = OpenOptions::new().create(true).truncate(true).write(true).open(&new)?;
+            file.write_all(bytes)?;
+            file.sync_all()?;
+            OpenOptions::new().append(true).open(&new)
+        };
+        let file = write().map_err(|error| {
+            // It takes space that the log may need.
+            let _ = fs::remove_file(&new);
+            ReplaceError::Before(error)
+        })?;
+        fs::rename(&new, &log).map_err(ReplaceError::Before)?;
+        sync_folder(&self.folder).map_err(ReplaceError::Lost)?;
+        self.file = file;
+        Ok(())
+    }
+}

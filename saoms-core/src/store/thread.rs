@@ -1,0 +1,182 @@
+use std::mem;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::time::Duration;
+
+use super::log::{CommitError, Log, LogFile};
+use super::{Change, Store, group};
+
+/// What a component kept in one execution.
+#[derive(Debug)]
+pub(crate) struct Batch {
+    /// The component.
+    pub(crate) index: u32,
+    /// Number of the batch, for that component.
+    pub(crate) number: u64,
+    pub(crate) changes: Vec<Change>,
+}
+
+/// Who hears of the work of the thread.
+pub(crate) trait StoreEvents {
+    /// These batches are on the disk: the component and the number of each.
+    fn committed(&self, batches: &[(u32, u64)]);
+    /// The disk has no space left: nothing is committed, or as much as was reserved. `None` once it has.
+    fn is_full(&self, text: Option<String>);
+    /// Something hinders nothing yet.
+    fn complain(&self, text: String);
+    /// Nothing will be committed any more.
+    fn failed(&self, text: &str);
+}
+
+/// Batches on their way to the disk. Whoever hands one over does not wait.
+#[derive(Debug, Default)]
+pub(crate) struct StoreQueue {
+    waiting: Mutex<Waiting>,
+    wake: Condvar,
+    /// Number of bytes of all that is not on the disk, also of what is being written.
+    bytes: AtomicUsize,
+    failure: OnceLock<String>,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    batches: Vec<Batch>,
+    is_closed: bool,
+}
+
+/// Most bytes that may wait. The disk is full or too slow beyond them.
+const MOST_WAITING: usize = 64 << 20;
+/// Pause before a full disk is tried again.
+const RETRY: Duration = Duration::from_secs(1);
+
+impl StoreQueue {
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Hands a batch over.
+    pub(crate) fn put(&self, batch: Batch) {
+        self.bytes.fetch_add(size(&batch), Ordering::Relaxed);
+        self.lock().batches.push(batch);
+        self.wake.notify_one();
+    }
+
+    /// True once nothing will be committed any more.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.failure.get().is_some()
+    }
+
+    /// Why nothing more can be kept, if that is so.
+    pub(crate) fn refusal(&self) -> Option<String> {
+        if let Some(failure) = self.failure.get() {
+            return Some(failure.clone());
+        }
+        let is_behind = self.bytes.load(Ordering::Relaxed) > MOST_WAITING;
+        is_behind.then(|| {
+            let most = MOST_WAITING >> 20;
+            format!("more than {most} MiB wait to be written to the state folder: its disk is full or too slow")
+        })
+    }
+
+    /// Lets the thread end once all is written.
+    pub(crate) fn close(&self) {
+        self.lock().is_closed = true;
+        self.wake.notify_one();
+    }
+}
+
+fn size(batch: &Batch) -> usize {
+    let bytes = |change: &Change| change.bytes.as_ref().map_or(0, |bytes| bytes.len());
+    batch.changes.iter().map(|change| bytes(change) + change.component.len() + mem::size_of::<u64>()).sum()
+}
+
+/// Writes what comes through the queue, until that is closed. All that came while the disk was busy is one group.
+pub(crate) fn write(store: Store, queue: &StoreQueue, events: &impl StoreEvents) {
+    Writer { log: store.log, queue, events, is_full: false }.write();
+}
+
+pub(super) struct Writer<'a, F, E> {
+    pub(super) log: Log<F>,
+    pub(super) queue: &'a StoreQueue,
+    pub(super) events: &'a E,
+    /// True if it was told that the disk is full.
+    pub(super) is_full: bool,
+}
+
+impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
+    pub(super) fn write(&mut self) {
+        self.look_for_space();
+        let mut waiting = self.queue.lock();
+        loop {
+            if !waiting.batches.is_empty() {
+                let batches = take_group(&mut waiting.batches);
+                drop(waiting);
+                if self.commit(batches).is_err() {
+                    return;
+                }
+                if let Some(error) = self.log.complaint() {
+                    self.events
+                        .complain(format!("the log of the state folder cannot be written anew, and grows: {error}"));
+                }
+                self.look_for_space();
+                waiting = self.queue.lock();
+            } else if waiting.is_closed {
+                return;
+            } else {
+                waiting = self.queue.wake.wait(waiting).unwrap_or_else(PoisonError::into_inner);
+            }
+        }
+    }
+
+    /// Commits batches, and waits for a full disk until the queue is closed.
+    fn commit(&mut self, mut batches: Vec<Batch>) -> Result<(), ()> {
+        let numbers: Vec<(u32, u64)> = batches.iter().map(|batch| (batch.index, batch.number)).collect();
+        let bytes: usize = batches.iter().map(size).sum();
+        let changes: Vec<Change> = batches.iter_mut().flat_map(|batch| mem::take(&mut batch.changes)).collect();
+        let error = loop {
+            match self.log.commit(&changes) {
+                Ok(()) => {
+                    self.queue.bytes.fetch_sub(bytes, Ordering::Relaxed);
+                    self.events.committed(&numbers);
+                    return Ok(());
+                }
+                Err(CommitError::Failed(error)) => break error,
+                Err(CommitError::Full(error)) => {
+                    self.tell_full(true);
+                    let waiting = self.queue.lock();
+                    if waiting.is_closed {
+                        break error;
+                    }
+                    drop(self.queue.wake.wait_timeout(waiting, RETRY));
+                }
+            }
+        };
+        let text = format!("the state folder cannot be written: {error}; what is kept from now on would be lost");
+        let text = self.queue.failure.get_or_init(|| text);
+        self.events.failed(text);
+        Err(())
+    }
+
+    fn look_for_space(&mut self) {
+        let has_space = self.log.reserve();
+        self.tell_full(!has_space);
+    }
+
+    fn tell_full(&mut self, is_full: bool) {
+        if mem::replace(&mut self.is_full, is_full) != is_full {
+            let text = "the disk of the state folder is full: make space; components that keep something wait for it";
+            self.events.is_full(is_full.then(|| text.to_owned()));
+        }
+    }
+}
+
+/// Takes the batches that fit into one group, at least one.
+fn take_group(batches: &mut Vec<Batch>) -> Vec<Batch> {
+    let mut bytes = 0;
+    let fits = |batch: &Batch| {
+        bytes += size(batch) + batch.changes.len() * 16;
+        bytes <= group::MOST_BYTES
+    };
+    let count = batches.iter().map(fits).take_while(|fits| *fits).count().max(1);
+    batches.drain(..count).collect()
+}

@@ -1,0 +1,233 @@
+//! What a component keeps is committed before its messages leave, and outlives the program in a store.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::time::Duration;
+
+use saoms_api::host::Registration;
+use saoms_api::{Class, Component, Context, Failure, Own, Publisher};
+use saoms_core::schedule::{RunningFleet, Settings};
+use saoms_core::store::Store;
+use saoms_lang::registry::Registry;
+
+use crate::actor::{Actor, TALK, Words};
+use crate::fleet::{Diary, assembly_of, outcome, real, simulated, unindent};
+
+/// Counts what it kept, says so, and has no other memory.
+#[derive(Class)]
+#[class(name = "ledger", periodic)]
+struct Ledger {
+    /// Executions that keep something, by times in milliseconds with blanks around them; without this, all.
+    #[property(default = "")]
+    keeps: String,
+    /// Executions that fail.
+    #[property(default = "")]
+    fails: String,
+    /// The number of executions after which its work is done.
+    #[property(default = 1000)]
+    most: u32,
+    #[publishes(TALK)]
+    words: Publisher<Words>,
+    count: u32,
+}
+
+impl Component for Ledger {
+    type Properties = Own<Self>;
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.count = context.kept().get(&5).map_or(0, |bytes| u32::from_le_bytes(bytes.to_vec().try_into().unwrap()));
+        let of = if context.kept_by_earlier_program() { ", of an earlier program" } else { "" };
+        context.info(format!("begins with {}{of}", self.count));
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let now = format!(" {} ", context.now().as_nanos() / 1_000_000);
+        if self.fails.contains(&now) {
+            return Err("it was told to".into());
+        }
+        self.count += 1;
+        if self.keeps.is_empty() || self.keeps.contains(&now) {
+            context.keep(5, &self.count.to_le_bytes())?;
+        }
+        context.vote(if self.count >= self.most { saoms_api::Work::Done } else { saoms_api::Work::Open });
+        context.send(&self.words, Words { text: self.count.to_string() })
+    }
+}
+
+fn start(fleet: &str, settings: Settings, folder: Option<&Path>) -> (RunningFleet, Arc<Diary>) {
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Actor>()).unwrap();
+    registry.add(Registration::of::<Ledger>()).unwrap();
+    let diary = Arc::new(Diary::default());
+    let assembly = assembly_of(fleet, &registry);
+    let fleet = RunningFleet::start_with(assembly, settings, vec![diary.clone()], |handle| {
+        folder.map_or(Ok(()), |folder| handle.use_store(Store::open(folder).unwrap()))
+    });
+    (fleet.unwrap(), diary)
+}
+
+#[track_caller]
+fn check(fleet: &str, settings: Settings, expected: &str) {
+    let (fleet, diary) = start(fleet, settings, None);
+    let report = fleet.run_to_end();
+    assert_eq!(format!("{}{}", diary.lines(), outcome(&report)), unindent(expected));
+}
+
+fn with_delay(milliseconds: u64, delay: u64) -> Settings {
+    Settings { commit_delay: Duration::from_millis(delay), ..simulated(milliseconds) }
+}
+
+#[test]
+fn messages_wait_in_their_order_for_what_was_kept_before_them() {
+    check(
+        "A ledger period=10 keeps=[ 0 30 ]
+         B actor period=10 subscribes=TALK each=[hear]",
+        with_delay(70, 25),
+        "[0.000 s] A: begins with 0
+         [0.000 s] B: hears []
+         [0.010 s] B: hears []
+         [0.020 s] B: hears []
+         [0.030 s] B: hears [1, 2, 3]
+         [0.040 s] B: hears []
+         [0.050 s] B: hears []
+         [0.060 s] B: hears [4, 5, 6, 7]
+         Elapsed after 0.07 s",
+    );
+    check(
+        "A ledger period=10
+         B actor period=10 subscribes=TALK each=[hear]",
+        with_delay(20, 0),
+        "[0.000 s] A: begins with 0
+         [0.000 s] B: hears [1]
+         [0.010 s] B: hears [2]
+         Elapsed after 0.02 s",
+    );
+}
+
+#[test]
+fn a_failure_in_virtual_time_loses_what_was_not_committed_with_its_messages() {
+    check(
+        "A ledger period=10 fails=[ 30 ] restart=5/3
+         B actor period=10 subscribes=TALK each=[hear]",
+        with_delay(80, 15),
+        "[0.000 s] A: begins with 0
+         [0.000 s] B: hears []
+         [0.010 s] B: hears []
+         [0.020 s] B: hears [1]
+         [0.030 s] A: failed and is restarted in 5ms: it was told to (messages that waited for what it kept, and are not sent: 1)
+         [0.030 s] B: hears [2]
+         [0.035 s] A: begins with 2
+         [0.035 s] A: restarted (1)
+         [0.040 s] B: hears []
+         [0.050 s] B: hears [3]
+         [0.060 s] B: hears [4]
+         [0.070 s] B: hears [5]
+         Elapsed after 0.08 s",
+    );
+}
+
+#[test]
+fn a_run_ends_after_the_last_commit() {
+    check(
+        "A ledger period=10 most=2
+         B actor period=10 subscribes=TALK each=[hear]",
+        with_delay(1000, 35),
+        "[0.000 s] A: begins with 0
+         [0.000 s] B: hears []
+         [0.010 s] B: hears []
+         [0.020 s] B: hears []
+         [0.030 s] B: hears []
+         [0.040 s] B: hears [1]
+         [0.050 s] B: hears [2]
+         [0.060 s] B: hears [3]
+         [0.070 s] B: hears [4]
+         Done after 0.075 s",
+    );
+}
+
+#[test]
+fn a_store_outlives_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |fleet: &str| {
+        let (fleet, diary) = start(fleet, real(5_000), Some(folder.path()));
+        let report = fleet.run_to_end();
+        let begins = diary.lines().lines().map(|line| line[10..].trim().to_owned()).collect::<Vec<_>>();
+        (begins.join("; "), report.outcome.reasons)
+    };
+    let first = run("A ledger period=1 most=20\nB ledger period=1 most=3");
+    assert_eq!(first, ("A: begins with 0; B: begins with 0".to_owned(), vec![]));
+    let unknown = "the state folder has what `B` kept, and the fleet has no such component: it stays there";
+    let (told, reasons) = run("A ledger period=1 most=30");
+    assert!(told.contains(unknown) && told.contains("A: begins with"), "{told}");
+    assert_eq!(reasons, Vec::<String>::new());
+    let (told, _) = run("A ledger period=1 most=31\nB ledger period=1 most=5");
+    let count = |name: &str| -> u32 {
+        let (_, rest) = told.split_once(&format!("{name}: begins with ")).unwrap();
+        assert!(rest.contains(", of an earlier program"), "{rest}");
+        rest.split(',').next().unwrap().parse().unwrap()
+    };
+    assert!(count("A") >= 30 && count("B") >= 3, "{told}");
+}
+
+#[test]
+fn what_a_removed_component_kept_is_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (fleet, _) = start("A ledger period=1\nB ledger period=1", real(5_000), Some(folder.path()));
+    std::thread::sleep(Duration::from_millis(20));
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Ledger>()).unwrap();
+    fleet.handle().apply(&assembly_of("A ledger period=1", &registry)).unwrap();
+    fleet.handle().stop();
+    fleet.run_to_end();
+    let (fleet, diary) = start("A ledger period=1\nB ledger period=1", real(5_000), Some(folder.path()));
+    fleet.handle().stop();
+    fleet.run_to_end();
+    assert!(diary.lines().contains("B: begins with 0"), "{}", diary.lines());
+    assert!(!diary.lines().contains("A: begins with 0"), "{}", diary.lines());
+}
+
+/// The folder in which a killed program keeps something; without it, this is no such program.
+const FOLDER: &str = "SAOMS_TEST_STORE";
+
+/// The program that [`nothing_that_was_sent_is_lost_by_a_kill`] kills: it prints what B hears of A.
+#[test]
+fn program_that_is_killed() {
+    let Some(folder) = std::env::var_os(FOLDER) else { return };
+    let fleet = "A ledger period=1\nB actor period=1 subscribes=TALK each=[hear]";
+    let (fleet, diary) = start(fleet, real(20_000), Some(Path::new(&folder)));
+    let mut printed = 0;
+    loop {
+        std::thread::sleep(Duration::from_millis(1));
+        let lines = diary.lines();
+        lines.lines().skip(printed).for_each(|line| eprintln!("{line}"));
+        printed = lines.lines().count();
+        if fleet.handle().progress().time.as_nanos() > 19_000_000_000 {
+            return;
+        }
+    }
+}
+
+#[test]
+fn nothing_that_was_sent_is_lost_by_a_kill() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut most = 0;
+    for milliseconds in [60, 75, 90, 61, 80, 66, 94, 72, 69, 85] {
+        let mut program = Command::new(std::env::current_exe().unwrap());
+        program.args(["--exact", "store::program_that_is_killed", "--nocapture"]).env(FOLDER, folder.path());
+        let mut program = program.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut lines = BufReader::new(program.stderr.take().unwrap()).lines().map_while(Result::ok);
+        let begins = lines.find(|line| line.contains("begins with")).unwrap();
+        let kept: u32 = begins.split("begins with ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
+        assert!(kept >= most, "it kept {kept}, and had said {most}");
+        std::thread::sleep(Duration::from_millis(milliseconds));
+        program.kill().unwrap();
+        program.wait().unwrap();
+        let said =
+            |line: String| line.rsplit_once("hears [")?.1.trim_end_matches(']').rsplit(", ").next()?.parse().ok();
+        most = lines.filter_map(said).max().unwrap_or(kept);
+    }
+    assert!(most > 10, "{most}");
+}
