@@ -102,10 +102,15 @@ fn as_option(word: &str) -> Option<String> {
 
 /// A setting, which has to be one argument.
 fn setting(text: &str) -> Result<String, String> {
+    setting_of("--set", text)
+}
+
+/// The same for another option.
+pub(crate) fn setting_of(option: &str, text: &str) -> Result<String, String> {
     match text.contains('=') {
         true => Ok(text.to_owned()),
         false => {
-            let mut message = format!("found no `=`: write `--set {text}=VALUE`, without blanks around `=`");
+            let mut message = format!("found no `=`: write `{option} {text}=VALUE`, without blanks around `=`");
             shorten(&mut message);
             Err(message)
         }

@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use super::SimulateArguments;
 use super::ending::{Shared, share, wait_for};
 use super::one::{SeedResult, Simulation};
+use super::{Side, SimulateArguments};
 use crate::output::{eprint, has_failed, print_json_line};
 
 /// Runs the seeds that come on standard input, one a line; each result is a line of JSON.
@@ -32,10 +32,14 @@ struct Worker {
 }
 
 impl Worker {
-    /// Starts a process with the same arguments.
-    fn start() -> io::Result<Worker> {
+    /// Starts a process with the same arguments, for one of the fleets.
+    fn start(side: Side) -> io::Result<Worker> {
         let mut command = Command::new(env::current_exe()?);
-        command.args(env::args_os().skip(1)).arg("--worker").stdin(Stdio::piped()).stdout(Stdio::piped());
+        command
+            .args(env::args_os().skip(1))
+            .args(["--worker", side.word()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped());
         let mut child = command.spawn()?;
         let missing = || io::Error::other("it has no pipe");
         let seeds = child.stdin.take().ok_or_else(missing)?;
@@ -58,18 +62,23 @@ impl Worker {
     }
 }
 
-/// Runs all seeds; their results in the order of the seeds.
+/// Runs all seeds of a fleet; their results in the order of the seeds.
 ///
 /// # Errors
 /// No process can be started.
-pub(super) fn run(arguments: &SimulateArguments, seeds: RangeInclusive<u64>) -> Result<Vec<SeedResult>, String> {
+pub(super) fn run(
+    arguments: &SimulateArguments,
+    side: Side,
+    seeds: RangeInclusive<u64>,
+) -> Result<Vec<SeedResult>, String> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let jobs = arguments.jobs.map_or(cores, usize::from).min(usize::try_from(arguments.seeds).unwrap_or(usize::MAX));
     let (next, results) = (AtomicU64::new(0), Mutex::new(Vec::new()));
     let progress = Progress::new(arguments.seeds);
     let first = *seeds.start();
     let crew = || -> Result<(), String> {
-        let start = || Worker::start().map_err(|error| format!("a process for the seeds cannot be started: {error}"));
+        let start =
+            || Worker::start(side).map_err(|error| format!("a process for the seeds cannot be started: {error}"));
         let mut worker = start()?;
         loop {
             let place = next.fetch_add(1, Ordering::Relaxed);

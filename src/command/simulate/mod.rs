@@ -1,6 +1,7 @@
 //! `saoms simulate`: many runs of a fleet in virtual time, each with another seed, held to the invariants of its
 //! components.
 
+mod compare;
 mod crew;
 mod ending;
 mod one;
@@ -17,11 +18,12 @@ use saoms_lang::project::INPUT;
 
 use super::run::faults::{FaultScript, Known, report_wrong};
 use crate::Exit;
-use crate::arguments::{FleetArguments, duration};
+use crate::arguments::{FleetArguments, duration, setting_of};
 use crate::fleet::{DiagnosticReport, compiled};
 use crate::output::{counted, eprint, eprint_coloured, print, print_json};
+use compare::Comparison;
 use one::Simulation;
-use table::Table;
+use table::{Table, named};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -45,6 +47,15 @@ pub(crate) struct SimulateArguments {
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) first: u64,
 
+    /// Run the fleet of this composite with the same seeds, too, and compare both, with how they adapt; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub(crate) against: Vec<PathBuf>,
+
+    /// Set the value of a composite property in the other fleet; without `--against`, that is the same composite. Other
+    /// values of `--set` are those of both fleets; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting_of_other)]
+    pub(crate) against_set: Vec<String>,
+
     /// Put the faults of this file into each run, as `saoms run --faults` does
     #[arg(long, value_name = "FILE")]
     pub(crate) faults: Option<PathBuf>,
@@ -62,8 +73,47 @@ pub(crate) struct SimulateArguments {
     pub(crate) report: ReportFormat,
 
     /// Run the seeds that come on standard input: what a process of `saoms simulate` does
-    #[arg(long, hide = true)]
-    pub(crate) worker: bool,
+    #[arg(long, hide = true, value_enum, value_name = "SIDE")]
+    pub(crate) worker: Option<Side>,
+}
+
+/// The fleets of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Side {
+    One,
+    Other,
+}
+
+impl Side {
+    fn word(self) -> &'static str {
+        match self {
+            Side::One => "one",
+            Side::Other => "other",
+        }
+    }
+}
+
+/// A setting of the other fleet, which has to be one argument.
+fn setting_of_other(text: &str) -> Result<String, String> {
+    setting_of("--against-set", text)
+}
+
+impl SimulateArguments {
+    /// The fleet to compare with, if there is one.
+    fn other(&self) -> Option<FleetArguments> {
+        if self.against.is_empty() && self.against_set.is_empty() {
+            return None;
+        }
+        let mut fleet = self.fleet.clone();
+        if !self.against.is_empty() {
+            fleet.files.clone_from(&self.against);
+        }
+        let name = |setting: &str| setting.split('=').next().unwrap_or_default().to_owned();
+        let replaced: Vec<String> = self.against_set.iter().map(|one| name(one)).collect();
+        fleet.settings.retain(|one| !replaced.contains(&name(one)));
+        fleet.settings.extend(self.against_set.iter().cloned());
+        Some(fleet)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -73,43 +123,63 @@ pub(crate) enum ReportFormat {
 }
 
 pub(crate) fn simulate(arguments: &SimulateArguments) -> Exit {
-    if arguments.fleet.files.iter().any(|path| path == Path::new(INPUT)) {
+    let other = arguments.other();
+    let fleets = || [Some(&arguments.fleet), other.as_ref()].into_iter().flatten();
+    if fleets().any(|fleet| fleet.files.iter().any(|path| path == Path::new(INPUT))) {
         eprint("error: several processes read the composites, which standard input cannot be\n  = help: name a file\n");
         return Exit::WrongInput;
     }
-    if !arguments.worker {
-        ending::end_at_signals();
+    if let Some(side) = arguments.worker {
+        let fleet = other.as_ref().filter(|_| side == Side::Other).unwrap_or(&arguments.fleet);
+        return match simulation(arguments, fleet) {
+            Ok(simulation) => {
+                crew::work(&simulation);
+                Exit::Done
+            }
+            Err(exit) => exit,
+        };
     }
-    let simulation = match simulation(arguments) {
-        Ok(simulation) => simulation,
+    ending::end_at_signals();
+    // The mistakes of both are shown before anything starts.
+    let simulations: Vec<_> = fleets().map(|fleet| simulation(arguments, fleet).map(|one| (fleet, one))).collect();
+    let simulations = match simulations.into_iter().collect::<Result<Vec<_>, Exit>>() {
+        Ok(simulations) => simulations,
         Err(exit) => return exit,
     };
-    if arguments.worker {
-        crew::work(&simulation);
-        return Exit::Done;
-    }
-    let began = Instant::now();
     let last = arguments.first.saturating_add(arguments.seeds - 1);
-    let results = match crew::run(arguments, arguments.first..=last) {
-        Ok(results) => results,
+    let tables = simulations.iter().zip([Side::One, Side::Other]).map(|((fleet, simulation), side)| {
+        let began = Instant::now();
+        let results = crew::run(arguments, side, arguments.first..=last)?;
+        Ok(Table::of((arguments, fleet), results, began.elapsed(), simulation))
+    });
+    let tables = match tables.collect::<Result<Vec<Table>, String>>() {
+        Ok(tables) => tables,
         Err(why) => {
             eprint(&format!("error: {why}\n"));
             return Exit::Failed;
         }
     };
-    let table = Table::of(arguments, results, began.elapsed(), &simulation);
-    match arguments.report {
-        ReportFormat::Human => print(&table),
-        ReportFormat::Json => print_json(&table.json()),
+    match (&tables[..], &other) {
+        ([one, two], Some(other)) => {
+            let comparison = Comparison::of([named(&arguments.fleet), named(other)], [one, two]);
+            match arguments.report {
+                ReportFormat::Human => print(&comparison),
+                ReportFormat::Json => print_json(&comparison.json()),
+            }
+        }
+        (tables, _) => tables.iter().for_each(|table| match arguments.report {
+            ReportFormat::Human => print(table),
+            ReportFormat::Json => print_json(&table.json()),
+        }),
     }
-    if table.is_clean() { Exit::Done } else { Exit::Failed }
+    if tables.iter().all(Table::is_clean) { Exit::Done } else { Exit::Failed }
 }
 
-/// What each process runs. Mistakes are shown.
-fn simulation(arguments: &SimulateArguments) -> Result<Simulation, Exit> {
-    let compilation = compiled(&arguments.fleet, |project, classes| project.to_start().compile(classes))?;
+/// What each process runs of a fleet. Mistakes are shown.
+fn simulation(arguments: &SimulateArguments, fleet: &FleetArguments) -> Result<Simulation, Exit> {
+    let compilation = compiled(fleet, |project, classes| project.to_start().compile(classes))?;
     let shown = DiagnosticReport::from(&compilation);
-    if !arguments.worker {
+    if arguments.worker.is_none() {
         eprint_coloured(&shown.human(Severity::Warning));
     }
     let errors = shown.count(Severity::Error);
@@ -126,5 +196,6 @@ fn simulation(arguments: &SimulateArguments) -> Result<Simulation, Exit> {
         report_wrong(&wrong);
         return Err(Exit::WrongInput);
     }
-    Ok(Simulation { assembly, known, script, limit: arguments.limit, first: arguments.first })
+    let is_measured = arguments.other().is_some();
+    Ok(Simulation { assembly, known, script, limit: arguments.limit, first: arguments.first, is_measured })
 }

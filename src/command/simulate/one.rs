@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_core::observe::{InvariantWatch, Observer};
+use saoms_core::adaptation::{AdaptationReport, Spread};
+use saoms_core::observe::{AdaptationWatch, InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
@@ -19,6 +20,8 @@ pub(super) struct Simulation {
     pub(super) script: Option<FaultScript>,
     pub(super) limit: Duration,
     pub(super) first: u64,
+    /// True if the figures have how the fleet adapted.
+    pub(super) is_measured: bool,
 }
 
 /// What came of one seed.
@@ -105,7 +108,10 @@ impl Simulation {
     pub(super) fn run_with(&self, seed: u64, events: Vec<PlannedEvent>) -> SeedResult {
         let watch = Arc::new(InvariantWatch::default());
         let settings = Settings { limit: Some(self.limit), journal: 0, ..Settings::simulated(seed) };
-        let observers = vec![Arc::clone(&watch) as Arc<dyn Observer>];
+        let mut observers = vec![Arc::clone(&watch) as Arc<dyn Observer>];
+        if self.is_measured {
+            observers.push(Arc::new(AdaptationWatch::of(&self.assembly)));
+        }
         let fleet = match RunningFleet::start(self.assembly.clone(), settings, observers) {
             Ok(fleet) => fleet,
             Err(error) => return SeedResult::failed(seed, error.to_string()),
@@ -132,6 +138,8 @@ impl Simulation {
         violations.truncate(MOST);
         let figure =
             |one: saoms_api::extension::Measure| Figure { name: one.name.to_owned(), value: one.value, of: one.of };
+        let mut measures: Vec<Figure> = watch.measures().into_iter().map(figure).collect();
+        measures.extend(report.adaptation.iter().flat_map(figures));
         SeedResult {
             seed,
             status: serde_json::to_value(report.outcome.status)
@@ -143,9 +151,29 @@ impl Simulation {
             periods: report.periods,
             trace_hash: report.trace_hash,
             faults,
-            measures: watch.measures().into_iter().map(figure).collect(),
+            measures,
             violations,
             more,
         }
     }
+}
+
+/// How the fleet adapted, as figures: of each kind of event the means of its times, and sums.
+fn figures(adaptation: &AdaptationReport) -> Vec<Figure> {
+    let mut all = Vec::new();
+    for kind in &adaptation.kinds {
+        let mut add = |what: &str, value: Option<f64>| {
+            let name = format!("{kind}: {what}");
+            all.extend(value.map(|value| Figure { name, value, of: None }));
+        };
+        let mean = |spread: Option<Spread>| spread.map(|spread| spread.mean);
+        add("events", Some(kind.count as f64));
+        add("detect, s", mean(kind.detect_s));
+        add("decide, s", mean(kind.decide_s));
+        add("effect, s", mean(kind.effect_s));
+        add("settle, s", mean(kind.settle_s));
+        add("needless", (!kind.own).then_some(kind.needless as f64));
+        add("dip, %", kind.throughput.and_then(|throughput| throughput.dip_percent));
+    }
+    all
 }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::SimulateArguments;
 use super::one::{SeedResult, Simulation};
 use super::shrink::shrunk;
+use crate::arguments::FleetArguments;
 
 /// The most failing seeds that are shown, and whose faults are shrunk.
 const MOST_SHOWN: usize = 20;
@@ -60,8 +61,9 @@ impl Sum {
 }
 
 impl Table {
+    /// The result of the runs of this fleet.
     pub(super) fn of(
-        arguments: &SimulateArguments,
+        (arguments, fleet): (&SimulateArguments, &FleetArguments),
         results: Vec<SeedResult>,
         took: Duration,
         simulation: &Simulation,
@@ -70,7 +72,7 @@ impl Table {
         let replays = failing.take(MOST_SHOWN).map(|(place, result)| {
             let faults = (place < MOST_SHRUNK).then(|| shrunk(simulation, result)).flatten();
             let faults = faults.map(|events| events.iter().map(|event| event.line()).collect());
-            Replay { seed: result.seed, command: replay(arguments, result.seed), faults }
+            Replay { seed: result.seed, command: replay(arguments, fleet, result.seed), faults }
         });
         let replays = replays.collect();
         Table { first: arguments.first, results, took, replays }
@@ -163,16 +165,24 @@ impl Table {
     }
 }
 
-/// The command that shows a seed again.
-fn replay(arguments: &SimulateArguments, seed: u64) -> String {
-    let quoted = |text: String| match text.chars().all(|sign| sign.is_alphanumeric() || "._-/=:+,".contains(sign)) {
+/// A word as a shell takes it.
+fn quoted(text: String) -> String {
+    match text.chars().all(|sign| sign.is_alphanumeric() || "._-/=:+,".contains(sign)) {
         true => text,
         false => format!("'{}'", text.replace('\'', "'\\''")),
-    };
-    let fleet = &arguments.fleet;
-    let mut words = vec!["saoms".to_owned(), "run".to_owned()];
-    words.extend(fleet.files.iter().map(|path| quoted(path.display().to_string())));
-    words.extend(fleet.settings.iter().flat_map(|one| ["--set".to_owned(), quoted(one.clone())]));
+    }
+}
+
+/// The files and settings of a fleet, as a command line has them.
+pub(super) fn named(fleet: &FleetArguments) -> String {
+    let files = fleet.files.iter().map(|path| quoted(path.display().to_string()));
+    let settings = fleet.settings.iter().flat_map(|one| ["--set".to_owned(), quoted(one.clone())]);
+    files.chain(settings).collect::<Vec<_>>().join(" ")
+}
+
+/// The command that shows a seed again.
+fn replay(arguments: &SimulateArguments, fleet: &FleetArguments, seed: u64) -> String {
+    let mut words = vec!["saoms".to_owned(), "run".to_owned(), named(fleet)];
     words.extend(
         fleet.plugins.plugins.iter().flat_map(|one| ["--plugin".to_owned(), quoted(one.display().to_string())]),
     );
@@ -185,26 +195,29 @@ fn replay(arguments: &SimulateArguments, seed: u64) -> String {
     words.join(" ")
 }
 
-impl fmt::Display for Table {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let row =
-            |formatter: &mut fmt::Formatter<'_>, name: &str, value: &str| writeln!(formatter, "{name:<27}{value}");
-        let listed = |all: Vec<String>| if all.is_empty() { "none".to_owned() } else { all.join(", ") };
+/// A name and its value.
+fn row(formatter: &mut fmt::Formatter<'_>, name: &str, value: &str) -> fmt::Result {
+    writeln!(formatter, "{name:<27}{value}")
+}
+
+fn listed(all: Vec<String>) -> String {
+    if all.is_empty() { "none".to_owned() } else { all.join(", ") }
+}
+
+impl Table {
+    /// The rows of seeds, time and ends of runs.
+    pub(super) fn runs(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let last = self.results.last().map_or(self.first, |result| result.seed);
         row(formatter, "seeds", &format!("{} to {last}: {}", self.first, self.results.len()))?;
         let hours = self.simulated() / 3600.0;
         let time = format!("{hours:.1} h simulated in {:.1} s, {} executions", self.took.as_secs_f64(), self.periods());
         row(formatter, "time", &time)?;
         let statuses = self.statuses().into_iter().map(|(status, count)| format!("{status} {count}"));
-        row(formatter, "runs", &listed(statuses.collect()))?;
-        for (name, sum) in self.figures() {
-            let value = match sum.of {
-                Some(of) if of > 0.0 => format!("{} of {of} ({:.1} %)", sum.total, 100.0 * sum.total / of),
-                Some(of) => format!("{} of {of}", sum.total),
-                None => format!("{:.1} ({:.1} to {:.1})", sum.mean(), sum.least, sum.most),
-            };
-            row(formatter, name, &value)?;
-        }
+        row(formatter, "runs", &listed(statuses.collect()))
+    }
+
+    /// The rows of faults and violations, and what shows failing seeds again.
+    pub(super) fn failures(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let faults = self.faults().into_iter().map(|(kind, count)| format!("{kind} {count}"));
         row(formatter, "faults applied", &listed(faults.collect()))?;
         let violations = self.violations();
@@ -233,5 +246,25 @@ impl fmt::Display for Table {
             writeln!(formatter, "\n{hidden} more seeds with violations: `--report json` has all")?;
         }
         Ok(())
+    }
+
+    /// The results by seed.
+    pub(super) fn results(&self) -> &[SeedResult] {
+        &self.results
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.runs(formatter)?;
+        for (name, sum) in self.figures() {
+            let value = match sum.of {
+                Some(of) if of > 0.0 => format!("{} of {of} ({:.1} %)", sum.total, 100.0 * sum.total / of),
+                Some(of) => format!("{} of {of}", sum.total),
+                None => format!("{:.1} ({:.1} to {:.1})", sum.mean(), sum.least, sum.most),
+            };
+            row(formatter, name, &value)?;
+        }
+        self.failures(formatter)
     }
 }

@@ -111,3 +111,65 @@ fn faults_of_messages_and_components_are_events() {
     let report: Value = serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
     assert_eq!(report["adaptation"]["events"], serde_json::json!([]), "it is short");
 }
+
+/// The rows of a comparison, as words, and the result of the command.
+fn compared(arguments: &[&str]) -> (Option<i32>, Vec<Vec<String>>, String) {
+    let simulate = ["simulate", "composites/airport.composite", "--seeds", "4", "--for", "5min"];
+    let output = saoms(&[&simulate[..], arguments].concat());
+    let told = text(&output);
+    let rows = told.lines().skip_while(|line| !line.starts_with("mean of runs"));
+    let rows = rows.map(|line| {
+        line.split("  ").map(str::trim).filter(|word| !word.is_empty()).map(str::to_owned).collect::<Vec<_>>()
+    });
+    let rows = rows.collect();
+    (output.status.code(), rows, told)
+}
+
+#[test]
+fn a_fleet_with_another_period_reacts_later() {
+    let (code, rows, told) = compared(&["--against-set", "period=200"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("A: composites/airport.composite\n"), "{told}");
+    assert!(told.contains("B: composites/airport.composite --set period=200\n"), "{told}");
+    assert!(told.contains("runs                       done 4\n"), "{told}");
+    let detect = rows.iter().find(|row| row[0] == "robot_breaks_down: detect, s").unwrap();
+    let expected = ["0.100 ± 0.000", "0.200 ± 0.000", "0.100", "0.100 to 0.100", "4", "yes"];
+    assert_eq!(detect[1..], expected, "{told}");
+    let settle = rows.iter().find(|row| row[0] == "robot_breaks_down: settle, s").unwrap();
+    assert!(settle[5] == "4" && settle[6] == "yes" && !settle[3].starts_with('-'), "{told}");
+}
+
+#[test]
+fn a_fleet_is_like_itself() {
+    let (code, rows, told) = compared(&["--against", "composites/airport.composite"]);
+    assert_eq!((code, rows.len()), (Some(0), 0), "{told}");
+    assert!(told.contains("figures that are the same with each seed: ") && !told.contains("only one"), "{told}");
+}
+
+#[test]
+fn two_composites_are_compared_by_what_both_have() {
+    let simulate = ["simulate", "composites/airport.composite", "--seeds", "4", "--for", "5min", "--report", "json"];
+    let told = stdout(&saoms(&[&simulate[..], &["--against", "composites/storm.composite"]].concat()));
+    let report: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(report["fleets"]["b"], "composites/storm.composite", "{told}");
+    assert_eq!(report["alone"].as_u64().map(|alone| alone > 0), Some(true), "it has no breakdown");
+    let pieces =
+        report["comparison"].as_array().unwrap().iter().find(|one| one["figure"] == "pieces delivered").unwrap();
+    assert_eq!(pieces["difference"]["mean"], 10.0, "{pieces}");
+    assert_eq!((&pieces["interval"], &pieces["is_beyond_chance"]), (&serde_json::json!([10.0, 10.0]), &true.into()));
+    assert_eq!(report["b"]["seeds"], 4);
+}
+
+#[test]
+fn a_comparison_with_what_is_wrong_starts_nothing() {
+    for (arguments, why) in [
+        (["--against", "none.composite"], "there is no such file"),
+        (["--against-set", "perid=200"], "`perid`"),
+        (["--against-set", "period"], "write `--against-set period=VALUE`"),
+        (["--against", "-"], "which standard input cannot be"),
+    ] {
+        let (code, _, told) = compared(&arguments);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains(why) && !told.contains("seeds, "), "{told}");
+    }
+}
