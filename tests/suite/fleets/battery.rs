@@ -193,3 +193,47 @@ fn without_a_gauge_or_a_number_the_robot_counts() {
         assert!(battery(counting) > 90.0, "{level:?}");
     }
 }
+
+/// Two robots whose own chargers are taken by robots that broke there, so that both charge at that of a third one.
+fn shared_charger(has_zone: bool) -> Fleet {
+    let component = |id: &str, class: &str, more: &str| {
+        format!(
+            r#"<component name="{id}"><implementation.rust class="saoms.{class}"/>
+            <property name="ID">{id}</property><property name="period">100</property>{more}</component>
+"#
+        )
+    };
+    let scenario = "at 0s breakdown 1; at 0s breakdown 4; at 0s breakdown 5; \
+        at 1s 4 times luggage (10,3)..(10,8) to (3,7)..(3,10); from 10s every 1s 8 times luggage random to random";
+    let world = r#"<reference name="world" target="World"/>"#;
+    let mut text = component("World", "World", "");
+    if has_zone {
+        text += &component("Zone", "Zone", world);
+    }
+    text += &component("Master", "MasterEnvironment", "");
+    text += &component("Environment", "Environment", &format!(r#"<property name="scenario">{scenario}</property>"#));
+    let robots = [((0, 1), (0, 9)), ((0, 3), (3, 3)), ((0, 5), (3, 5)), ((10, 1), (0, 3)), ((10, 9), (0, 5))];
+    for (place, ((x, y), (start_x, start_y))) in robots.into_iter().enumerate() {
+        let places = [("chargeX", x), ("chargeY", y), ("startX", start_x), ("startY", start_y)];
+        let places = places.map(|(name, value)| format!(r#"<property name="{name}">{value}</property>"#)).concat();
+        let battery = r#"<property name="dischargePerBlock">2</property>
+            <property name="dischargePerSecond">0.15</property><property name="chargePerSecond">10</property>"#;
+        text += &component(&format!("Robot{}", place + 1), "Robot", &[&places, battery, world].concat());
+    }
+    Fleet::of_text(format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
+{text}</composite>"#
+    ))
+}
+
+#[test]
+fn robots_that_share_a_charger_charge_one_after_the_other() {
+    for has_zone in [true, false] {
+        for seed in 1..=5 {
+            let run = shared_charger(has_zone).run(seed, Duration::from_secs(3600));
+            let luggage = &run.sections["luggage"];
+            assert_eq!((&luggage["delivered"], &run.sections["stranded"]), (&12.into(), &0.into()), "{}", run.log());
+            assert!(run.time_s < 600.0, "zone {has_zone}, seed {seed}: {} s", run.time_s);
+        }
+    }
+}
