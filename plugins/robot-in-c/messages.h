@@ -35,6 +35,34 @@
         "GIVEN_UP": 6}}}, {"name": "from", "type":)                                                         \
     BLOCK JSON(}, {"name": "to", "type":) BLOCK JSON(}, {"name": "block", "type":) BLOCK JSON(}]})
 
+#define TERRITORY                                                                                           \
+    JSON({"name": "Territory", "key": "zone", "fields": [{"name": "zone", "type": "uint32"},                \
+        {"name": "term", "type": "uint64"}, {"name": "corner", "type":)                                     \
+    BLOCK JSON(}, {"name": "width", "type": "uint32"}, {"name": "height", "type": "uint32"}]})
+
+#define STEPS                                                                                               \
+    JSON({"sequence": {"name": "Step", "fields": [{"name": "number", "type": "uint64"}, {"name": "block", "type":) \
+    BLOCK JSON(}]}})
+
+#define GRANT_REQUEST                                                                                       \
+    JSON({"name": "GrantRequest", "key": "link", "place": "block", "fields": [{"name": "link", "type": "uint64"}, \
+        {"name": "zone", "type": "uint32"}, {"name": "term", "type": "uint64"},                             \
+        {"name": "robot", "type": "uint32"}, {"name": "incarnation", "type": "uint64"},                     \
+        {"name": "number", "type": "uint64"}, {"name": "block", "type":)                                    \
+    BLOCK JSON(}, {"name": "end", "type":) BLOCK JSON(}, {"name": "received", "type": "uint64"},            \
+        {"name": "held", "type":) STEPS JSON(}, {"name": "goal", "type":) BLOCK                             \
+    JSON(}, {"name": "charger", "type":) BLOCK JSON(}, {"name": "rank", "type": "uint64"},                  \
+        {"name": "standing", "type": {"enumeration": "uint8", "values": {"MAKES_WAY": 0, "STAYS": 1, "LOST": 2}}}, \
+        {"name": "ahead", "type": "uint32"}]})
+
+#define GRANT                                                                                               \
+    JSON({"name": "Grant", "key": "link", "place": "block", "fields": [{"name": "link", "type": "uint64"},  \
+        {"name": "zone", "type": "uint32"}, {"name": "term", "type": "uint64"},                             \
+        {"name": "robot", "type": "uint32"}, {"name": "incarnation", "type": "uint64"},                     \
+        {"name": "heard", "type": "uint64"}, {"name": "block", "type":)                                     \
+    BLOCK JSON(}, {"name": "steps", "type":) STEPS JSON(}, {"name": "waits_for", "type": "uint32"},         \
+        {"name": "wanted", "type":) BLOCK JSON(}]})
+
 #define PROGRESS JSON({"enumeration": "uint8", "values": {"RUNNING": 0, "DONE": 1, "FAILED": 2}})
 
 #define HARDWARE                                                                                            \
@@ -61,6 +89,9 @@ enum { RUNNING = 0, DONE = 1, FAILED = 2 };
 
 /* What is said about luggage, as far as it is used here. */
 enum { REQUEST = 0, REFUSED = 5 };
+
+/* What a robot does when another one wants its block. */
+enum { MAKES_WAY = 0, LOST = 2 };
 
 typedef struct Block {
     int32_t x, y;

@@ -11,6 +11,52 @@
 /* The right of one that cannot move any more. */
 #define IMMOVABLE UINT64_MAX
 
+/* The most zones that it knows, and the most blocks that it holds. */
+#define MOST_ZONES 64
+#define MOST_HELD 24
+
+/* Enough for a request to a zone with `MOST_HELD` steps. */
+#define REQUEST_BYTES 640
+
+/* A block that it holds: a step that a zone granted, or number 0, where it entered the floor. */
+typedef struct Step {
+    uint32_t zone;
+    uint64_t number;
+    Block block;
+} Step;
+
+/* What it knows of a zone. */
+typedef struct Zone {
+    uint32_t number;
+    uint64_t term;
+    Block corner;
+    uint32_t width, height;
+    /* The highest number of a step that it received; all of these that it does not hold are released. */
+    uint64_t received;
+    /* The number of its newest request, that of the newest one that the zone took in, and the bytes of the former. */
+    uint64_t requests, heard;
+    uint8_t said[REQUEST_BYTES];
+    size_t said_length;
+} Zone;
+
+/* Its way through the zones of its site. */
+typedef struct Passage {
+    int has_zones;
+    uint32_t requests, territories_heard, grants_heard;
+    uint64_t incarnation;
+    /* The blocks that it holds, the one where it is first; none before it is on the floor. */
+    Step held[MOST_HELD];
+    size_t held_count;
+    Zone zones[MOST_ZONES];
+    size_t zone_count;
+    /* Executions since it repeated its requests, and all. */
+    int silent;
+    uint64_t executions;
+    /* The corner of the rectangle where it goes, from 0 to 3, and since when. */
+    int corner;
+    uint64_t since;
+} Passage;
+
 typedef struct Patrol {
     /* What the composite says. */
     char name[64];
@@ -29,6 +75,7 @@ typedef struct Patrol {
     int direction;
     int waited;
     uint64_t moves;
+    Passage passage;
 } Patrol;
 
 /* Takes in where the others are and what they want. */
@@ -39,5 +86,23 @@ int may_enter(const Patrol *patrol);
 
 /* Decides which block to want. */
 void want(Patrol *patrol, const SaomsHostHandle *host);
+
+/* In a site with zones (zones.c): */
+
+/* It is on the floor, and holds the block where it is. */
+void begin_passage(Patrol *patrol, const SaomsHostHandle *host);
+
+/* Takes in what zones say. */
+SaomsStatus hear_zones(Patrol *patrol, const SaomsHostHandle *host, SaomsSink error);
+
+/* The block that it may enter next, or null. */
+const Block *granted(const Patrol *patrol);
+
+/* Releases the blocks that it has left, and those that it has not begun to enter. */
+void release_left(Patrol *patrol);
+void release_ahead(Patrol *patrol);
+
+/* Tells zones what it holds and where it wants to go, where that changed or was not confirmed. */
+SaomsStatus ask_zones(Patrol *patrol, const SaomsHostHandle *host, int standing, SaomsSink error);
 
 #endif /* PATROL_H */

@@ -1,4 +1,4 @@
-/* A robot in C: it patrols along the edge of a rectangle, in one fleet with the robots that ship.
+/* A robot in C: it patrols along the edge of a rectangle, in one fleet with the robots that ship, with or without zones.
  *
  * It brings no luggage, and says so. Its wheels are those of the world behind its reference `world`; without one it moves at once.
  */
@@ -7,6 +7,9 @@
 
 /* Enough for each message here. */
 #define MESSAGE 128
+
+/* In a site with zones it repeats its state after so many executions. */
+#define REPEAT_STATE 50
 
 /* The hardware. */
 
@@ -41,6 +44,7 @@ static SaomsStatus enter(Patrol *patrol, const SaomsHostHandle *host, SaomsSink 
     int called;
     if (!patrol->has_world) {
         patrol->has_entered = 1;
+        begin_passage(patrol, host);
         return SaomsStatus_OK;
     }
     saoms_write_string(&arguments, patrol->name);
@@ -52,6 +56,7 @@ static SaomsStatus enter(Patrol *patrol, const SaomsHostHandle *host, SaomsSink 
     reader = saoms_reader(saoms_bytes(&reply));
     patrol->own.block = patrol->own.next = patrol->own.wanted = read_block(&reader);
     patrol->has_entered = 1;
+    begin_passage(patrol, host);
     /* A robot that starts again is where it was left; off its way it stays there. */
     return reader.failed ? saoms_fail(error, "the world does not say where the robot is") : SaomsStatus_OK;
 }
@@ -234,28 +239,71 @@ static SaomsTopicView topic(const char *name, const char *message, const char *s
     return view;
 }
 
+/* Somebody in its site grants blocks. */
+static void note_zone(void *has_zones, uint32_t sender, uint32_t has_begun, int64_t number) {
+    (void)sender, (void)has_begun, (void)number;
+    *(int *)has_zones = 1;
+}
+
 static SaomsStatus patrol_initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {
     Patrol *patrol = component;
     const SaomsHostFunctions *functions = host->functions;
     SaomsTopicView positions = topic("POSTOPIC", "Position", POSITION, 0);
     SaomsTopicView robots = topic("RLMSTOPIC", "RobotList", ROBOT_LIST, 0);
     SaomsTopicView luggage = topic("ELMSTOPIC", "EventLuggage", EVENT_LUGGAGE, 1);
+    SaomsTopicView requests = topic("GRANTREQUESTTOPIC", "GrantRequest", GRANT_REQUEST, 0);
+    SaomsTopicView territories = topic("ZONETOPIC", "Territory", TERRITORY, 0);
+    SaomsTopicView grants = topic("GRANTTOPIC", "Grant", GRANT, 0);
+    Passage *passage = &patrol->passage;
     SaomsStatus status;
     if ((status = functions->publish(host->state, &positions, &patrol->positions, error)) != SaomsStatus_OK ||
         (status = functions->publish(host->state, &robots, &patrol->robots, error)) != SaomsStatus_OK ||
         (status = functions->publish(host->state, &luggage, &patrol->luggage, error)) != SaomsStatus_OK ||
         (status = functions->subscribe(host->state, &positions, &patrol->positions_heard, error)) != SaomsStatus_OK ||
         (status = functions->subscribe(host->state, &luggage, &patrol->luggage_heard, error)) != SaomsStatus_OK ||
+        (status = functions->publish(host->state, &requests, &passage->requests, error)) != SaomsStatus_OK ||
+        (status = functions->subscribe(host->state, &territories, &passage->territories_heard, error)) !=
+            SaomsStatus_OK ||
+        (status = functions->subscribe(host->state, &grants, &passage->grants_heard, error)) != SaomsStatus_OK ||
         (status = functions->reference(host->state, saoms_text("world"), saoms_text("saoms.Hardware"), &patrol->world,
                                        error)) != SaomsStatus_OK) {
         return status;
     }
     patrol->has_world = (int)functions->is_wired(host->state, patrol->world);
+    functions->publishers(host->state, grants.name, &passage->has_zones, note_zone);
     if ((status = enter(patrol, host, error)) != SaomsStatus_OK ||
         (status = say_robot(patrol, host, 1, error)) != SaomsStatus_OK) {
         return status;
     }
     /* Before anybody moves, everybody has to know which blocks are held. */
+    return say_position(patrol, host, error);
+}
+
+/* The rest of an execution in a site with zones: it enters what is granted, and nothing else. */
+static SaomsStatus follow_grants(Patrol *patrol, const SaomsHostHandle *host, SaomsSink error) {
+    const Block *next;
+    SaomsStatus status;
+    release_left(patrol);
+    next = granted(patrol);
+    if (!patrol->is_moving && next != NULL) {
+        patrol->own.wanted = *next;
+        if ((status = drive(patrol, host, BEGIN, error)) != SaomsStatus_OK) {
+            return status;
+        }
+        release_left(patrol);
+    }
+    if ((status = ask_zones(patrol, host, MAKES_WAY, error)) != SaomsStatus_OK) {
+        return status;
+    }
+    next = granted(patrol);
+    patrol->own.wanted = next == NULL ? patrol->own.next : *next;
+    if (++patrol->passage.executions % REPEAT_STATE == 0) {
+        /* Where updates get lost, the others may know an older state. */
+        patrol->said.robot = 0;
+        if ((status = say_robot(patrol, host, 1, error)) != SaomsStatus_OK) {
+            return status;
+        }
+    }
     return say_position(patrol, host, error);
 }
 
@@ -271,8 +319,17 @@ static SaomsStatus patrol_execute(void *component, const SaomsHostHandle *host, 
     } else if (patrol->is_moving) {
         status = drive(patrol, host, POLL, error);
     }
-    if (status != SaomsStatus_OK || !patrol->has_entered || patrol->is_moving) {
+    if (status != SaomsStatus_OK || !patrol->has_entered) {
         return status;
+    }
+    if ((status = hear_zones(patrol, host, error)) != SaomsStatus_OK) {
+        return status;
+    }
+    if (patrol->passage.has_zones) {
+        return follow_grants(patrol, host, error);
+    }
+    if (patrol->is_moving) {
+        return SaomsStatus_OK;
     }
     /* It said in an earlier execution that it wants the block. */
     if (may_enter(patrol)) {
@@ -289,8 +346,27 @@ static SaomsStatus patrol_shutdown(void *component, const SaomsHostHandle *host,
     uint8_t memory[MESSAGE], answer[MESSAGE];
     SaomsBuffer arguments = arguments_of(patrol, memory), reply = saoms_buffer(answer, sizeof answer);
     SaomsStatus status;
-    if (patrol->has_world && patrol->has_entered && call(patrol, host, RETIRE, &arguments, &reply, error) < 0) {
+    int called = 0;
+    if (patrol->has_world && patrol->has_entered) {
+        called = call(patrol, host, RETIRE, &arguments, &reply, error);
+    }
+    if (called < 0) {
         return SaomsStatus_FAILED;
+    }
+    if (called == 1) {
+        SaomsReader reader = saoms_reader(saoms_bytes(&reply));
+        Block block = read_block(&reader);
+        if (!reader.failed) {
+            patrol->own.block = block;
+            patrol->is_moving = 0;
+        }
+    }
+    if (patrol->passage.has_zones && patrol->passage.held_count > 0) {
+        release_left(patrol);
+        release_ahead(patrol);
+        if ((status = ask_zones(patrol, host, LOST, error)) != SaomsStatus_OK) {
+            return status;
+        }
     }
     /* It stays where it is, and nobody else gets past it. */
     patrol->own.next = patrol->own.wanted = patrol->own.block;
@@ -309,10 +385,13 @@ static SaomsStatus patrol_shutdown(void *component, const SaomsHostHandle *host,
 /* In these messages the field `robot` says who speaks: nobody outside the fleet sends them in the robot's name. */
 #define ROBOT_SPEAKS ", \"speakers\": [{\"field\": \"robot\"}]},"
 
+/* It works without anybody who speaks with it there: its site may have no zones. */
+#define IF_ANY ", \"optional\": true"
+
 SAOMS_METADATA static const char metadata[] =
     JSON({"saoms": "plugin", "abi": 3, "package": "patrol", "version": "0.1.0", "entry": "patrol_plugin", "classes": [
         {"contract": 1, "class": "patrol.Robot", "kind": "periodic",
-         "doc": "Patrols along the edge of a rectangle, and keeps clear of the others.",
+         "doc": "Patrols along the edge of a rectangle, and keeps clear of the others. In a site with zones it asks for grants.",
          "properties": [
             {"name": "ID", "type": "string", "doc": "The robot's name.", "required": true, "nonEmpty": true, "unique": "robot"},
             {"name": "number", "type": "integer", "doc": "The robot's number.", "min": 1, "max": 4294967295,
@@ -328,8 +407,10 @@ SAOMS_METADATA static const char metadata[] =
          "publishes": [)
     TOPIC("POSTOPIC", "state", "Position") POSITION ROBOT_SPEAKS
     TOPIC("RLMSTOPIC", "state", "RobotList") ROBOT_LIST ROBOT_SPEAKS
+    TOPIC("GRANTREQUESTTOPIC", "state", "GrantRequest") GRANT_REQUEST IF_ANY ROBOT_SPEAKS
     TOPIC("ELMSTOPIC", "event", "EventLuggage") EVENT_LUGGAGE "}], \"subscribes\": ["
-    TOPIC("POSTOPIC", "state", "Position") POSITION "}," TOPIC("ELMSTOPIC", "event", "EventLuggage") EVENT_LUGGAGE
+    TOPIC("POSTOPIC", "state", "Position") POSITION "}," TOPIC("ELMSTOPIC", "event", "EventLuggage") EVENT_LUGGAGE "},"
+    TOPIC("ZONETOPIC", "state", "Territory") TERRITORY IF_ANY "}," TOPIC("GRANTTOPIC", "state", "Grant") GRANT IF_ANY
     "}], \"services\": [], \"references\": [{\"name\": \"world\", \"interface\":" HARDWARE ", \"optional\": true}]}]}";
 
 static const SaomsClassTable class_table = {

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use saoms_api::{Class, Component, Failure};
+use saoms_components::messages::POSITION;
 use saoms_testkit::{Fleet, Run};
 
 const HOUR: Duration = Duration::from_secs(3600);
@@ -212,4 +214,38 @@ fn robots_that_cannot_get_past_each_other_are_named() {
         "robots 1 at (4,0), 2 at (5,0) are in each other's way, and cannot get past: send one of them elsewhere";
     assert!(log.contains(expected), "{log}\n{}", run.log());
     assert_eq!(run.count("deadlocks"), 1, "{log}");
+}
+
+/// Says where it is, and asks no zone.
+#[derive(Class)]
+#[class(name = "test.Stroller", periodic, publishes(POSITION))]
+struct Stroller;
+
+impl Component for Stroller {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Stroller)
+    }
+}
+
+#[test]
+fn a_robot_of_a_class_that_asks_for_no_grants_is_refused() {
+    let fleet = |zones: &str| {
+        Fleet::of_text(format!(
+            r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
+            <component name="World"><implementation.rust class="saoms.World"/>
+            <property name="ID">World</property><property name="period">100</property></component>
+            {zones}
+            <component name="Stroller"><implementation.rust class="test.Stroller"/>
+            <property name="ID">Stroller</property><property name="period">100</property></component></composite>"#
+        ))
+    };
+    let zone = r#"<component name="Zone"><implementation.rust class="saoms.Zone"/>
+        <property name="ID">Zone</property><property name="period">100</property>
+        <reference name="world" target="World"/></component>"#;
+    let found = fleet(zone).diagnostics();
+    assert!(found.contains("error S5023") && found.contains("`Stroller` is a robot that asks no zone"), "{found}");
+    let without = fleet("").diagnostics();
+    assert!(!without.contains("S5023"), "{without}");
 }

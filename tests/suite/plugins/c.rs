@@ -15,11 +15,14 @@ use tempfile::TempDir;
 
 use crate::support::{self, root, text};
 
+/// The files of the robot.
+const SOURCES: [&str; 3] = ["robot.c", "traffic.c", "zones.c"];
+
 /// The built robot, in a folder that goes with this process.
 static LIBRARY: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let library = folder.path().join("libpatrol.so");
-    build(&["robot.c", "traffic.c"].map(|file| root().join("plugins/robot-in-c").join(file)), &library);
+    build(&SOURCES.map(|file| root().join("plugins/robot-in-c").join(file)), &library);
     (folder, library)
 });
 
@@ -219,7 +222,7 @@ fn code_runs_only_where_somebody_named_the_library() {
     let site = folder.path();
     let mark = site.join("mark.c");
     fs::write(&mark, MARK).unwrap();
-    let robot = ["robot.c", "traffic.c"].map(|file| root().join("plugins/robot-in-c").join(file));
+    let robot = SOURCES.map(|file| root().join("plugins/robot-in-c").join(file));
     fs::create_dir_all(site.join("fleet/plugins")).unwrap();
     build(&[&robot[..], &[mark]].concat(), &site.join("fleet/libpatrol.so"));
     let composite = fs::read_to_string(root().join(FLEET)).unwrap();

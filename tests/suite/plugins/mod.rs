@@ -1,6 +1,7 @@
 //! Libraries that are loaded: the examples, components in C, and code that changes while the fleet runs.
 
 mod c;
+mod c_zones;
 mod counter;
 mod examples;
 mod loops;
