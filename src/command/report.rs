@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use saoms_api::Time;
 use saoms_api::host::one_line;
+use saoms_core::adaptation::{Adaptations, Samples};
 use saoms_core::journal::{JournalDocument, JournalSource};
 use serde_json::{Value, json};
 
@@ -33,7 +34,7 @@ const UNKNOWN: [&str; 8] = [
     "components: class, executions, missed, late_us, deadline_misses, slow, restarts, replaced, failures, dropped, messages",
     "the sections of components",
     "journal.loops: without_effect",
-    "adaptation",
+    "adaptation: throughput",
     "votes and standstill",
     "outcome.status",
     "trace_hash",
@@ -70,11 +71,15 @@ fn rebuilt(document: &JournalDocument) -> Value {
             )
         }
     };
+    let mut adaptations = Adaptations::default();
+    document.components.iter().for_each(|component| adaptations.join(component));
+    document.journal.entries().iter().for_each(|entry| adaptations.take(entry));
     json!({
         "seed": document.seed,
         "time_s": document.end.unwrap_or(last).as_secs_f64(),
         "components": document.components,
         "journal": document.journal,
+        "adaptation": adaptations.report(&Samples::new(Vec::new())),
         "outcome": { "status": null, "reasons": [reason] },
         "unknown": UNKNOWN,
     })

@@ -1,5 +1,4 @@
 use std::collections::HashMap;
-use std::time::Duration;
 
 use saoms_api::event::fault::FaultCall;
 use saoms_api::host::Phase;
@@ -10,7 +9,7 @@ use super::known::{Known, KnownRecords, Origin};
 use super::names::Names;
 use super::report::{AdaptationReport, tables};
 use super::switches::{Closed, Switches};
-use crate::journal::JournalEntry;
+use crate::journal::{ComponentName, JournalEntry};
 
 /// Events that are measured at most; those beyond are counted.
 const MOST_EVENTS: usize = 100_000;
@@ -19,7 +18,7 @@ const MOST_KINDS: usize = 64;
 const OTHER_KINDS: &str = "(others)";
 
 /// Number of periods of a component after which what it did lasts: long enough for an answer of others.
-pub(super) const QUIET: u32 = 10;
+const QUIET: u64 = 10;
 
 /// What came of the events of a run, from the records of its journal as they come.
 ///
@@ -27,9 +26,8 @@ pub(super) const QUIET: u32 = 10;
 #[derive(Debug, Default)]
 pub struct Adaptations {
     names: Names,
-    /// [`QUIET`] periods in nanoseconds, by component and by its number.
-    quiet: HashMap<String, u64>,
-    quiet_of: HashMap<u32, u64>,
+    /// [`QUIET`] periods in nanoseconds, by component.
+    quiet: HashMap<u32, u64>,
     known: KnownRecords,
     switches: Switches,
     pub(super) events: Vec<Event>,
@@ -41,12 +39,12 @@ pub struct Adaptations {
 }
 
 impl Adaptations {
-    /// Without any record; with the period of each component, by its path. Without a period, nothing that a component
-    /// does lasts.
-    pub fn new(periods: impl IntoIterator<Item = (String, Duration)>) -> Adaptations {
-        let quiet = |period: Duration| u64::try_from((period * QUIET).as_nanos()).unwrap_or(u64::MAX);
-        let quiet = periods.into_iter().map(|(path, period)| (path, quiet(period))).collect();
-        Adaptations { quiet, ..Adaptations::default() }
+    /// Takes in a component: without its period, nothing that it does lasts.
+    pub fn join(&mut self, component: &ComponentName) {
+        if let Some(period) = component.period_us {
+            let quiet = period.saturating_mul(1000 * QUIET);
+            self.quiet.insert(self.names.number(&component.name), quiet);
+        }
     }
 
     /// Takes in a record. Causes come before what follows from them.
@@ -108,7 +106,7 @@ impl Adaptations {
 
     /// A record that follows from an event.
     fn follow(&mut self, entry: &JournalEntry, event: u32, cause: &Known, record: &mut Known) {
-        let quiet = self.quiet(entry.component(), record.component);
+        let quiet = self.quiet.get(&record.component).copied().unwrap_or(u64::MAX);
         record.is_beyond = cause.is_beyond || self.is_aftermath(event, cause, record, quiet);
         let now = record.time;
         if !record.is_beyond
@@ -170,11 +168,6 @@ impl Adaptations {
             let is_own = self.events.get(event as usize).is_some_and(|event| event.is_own);
             self.switches.open(event, component, entry, now, !is_own);
         }
-    }
-
-    fn quiet(&mut self, path: &str, component: u32) -> u64 {
-        let Adaptations { quiet, quiet_of, .. } = self;
-        *quiet_of.entry(component).or_insert_with(|| quiet.get(path).copied().unwrap_or(u64::MAX))
     }
 
     /// What came of all events of a run with these curves.

@@ -1,10 +1,9 @@
 use std::fmt::Write as _;
-use std::time::Duration;
 
 use saoms_api::extension::Curve;
 
 use super::{AdaptationReport, Adaptations, Samples, Throughput};
-use crate::journal::{Journal, read};
+use crate::journal::{ComponentName, Journal, read};
 
 /// A journal from lines such as `1.5 2 <- 1 Robot Path decision drives`: time, number, cause, component, loop (`-` for
 /// none), phase and the record's id; `entry:yes` and `entry:no` instead of the last two are a change to that.
@@ -40,8 +39,11 @@ fn journal(lines: &str) -> Journal {
 /// What came of the events of a journal, in a fleet whose components have a period of 100 ms.
 fn measured(lines: &str) -> AdaptationReport {
     let journal = journal(lines);
-    let periods = journal.entries().iter().map(|entry| (entry.component().to_owned(), Duration::from_millis(100)));
-    let mut adaptations = Adaptations::new(periods);
+    let mut adaptations = Adaptations::default();
+    for entry in journal.entries() {
+        let name = entry.component().to_owned();
+        adaptations.join(&ComponentName { name, id: None, period_us: Some(100_000) });
+    }
     journal.entries().iter().for_each(|entry| adaptations.take(entry));
     adaptations.report(&Samples::new(Vec::new()))
 }

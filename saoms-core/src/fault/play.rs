@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use saoms_api::Chance;
 use saoms_api::event::fault::{FAULTS, FaultCall, FaultKind, Rate};
+use saoms_api::{Cause, Chance};
 
 use super::flight::Flights;
 use super::named::Named;
@@ -147,8 +147,13 @@ impl FaultPlay {
         });
     }
 
-    /// Begins a fault of components.
-    pub(crate) fn begin_tasks(&mut self, call: &FaultCall, components: impl Iterator<Item = u32>, now: u64) {
+    /// Begins a fault of components, which the journal has as the record `cause`.
+    pub(crate) fn begin_tasks(
+        &mut self,
+        (call, cause): (&FaultCall, Cause),
+        components: impl Iterator<Item = u32>,
+        now: u64,
+    ) {
         self.begun += 1;
         for component in components {
             let fault = match call.kind {
@@ -162,8 +167,13 @@ impl FaultPlay {
                 }
                 _ => continue,
             };
-            self.tasks.add(component, fault);
+            self.tasks.add(component, fault, cause);
         }
+    }
+
+    /// The record of the fault of a component's last execution; none without a fault.
+    pub(crate) fn cause(&self, component: u32) -> Cause {
+        self.tasks.cause(component)
     }
 
     /// Chance that depends on the seed, the fault and its time, so that it is the same without the other faults.

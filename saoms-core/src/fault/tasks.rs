@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use saoms_api::Cause;
+
 /// A fault of one execution of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TaskFault {
@@ -26,15 +28,18 @@ struct Drift {
 /// The faults of components that are not over.
 #[derive(Debug, Default)]
 pub(super) struct TaskFaults {
-    waiting: Vec<(u32, TaskFault)>,
+    /// By component, with the record of the journal that says it.
+    waiting: Vec<(u32, TaskFault, Cause)>,
+    /// The records of the faults of the executions that began last.
+    played: Vec<(u32, Cause)>,
     drifts: Vec<Drift>,
 }
 
 const MILLION: i64 = 1_000_000;
 
 impl TaskFaults {
-    pub(super) fn add(&mut self, component: u32, fault: TaskFault) {
-        self.waiting.push((component, fault));
+    pub(super) fn add(&mut self, component: u32, fault: TaskFault, cause: Cause) {
+        self.waiting.push((component, fault, cause));
     }
 
     pub(super) fn drift(&mut self, component: u32, by: i32, until: u64) {
@@ -43,8 +48,16 @@ impl TaskFaults {
 
     /// The fault of an execution of a component that begins. Each comes once.
     pub(super) fn take(&mut self, component: u32) -> Option<TaskFault> {
-        let place = self.waiting.iter().position(|(concerned, _)| *concerned == component)?;
-        Some(self.waiting.remove(place).1)
+        self.played.retain(|(concerned, _)| *concerned != component);
+        let place = self.waiting.iter().position(|(concerned, ..)| *concerned == component)?;
+        let (_, fault, cause) = self.waiting.remove(place);
+        self.played.push((component, cause));
+        Some(fault)
+    }
+
+    /// The record of the fault of a component's last execution; none without a fault.
+    pub(super) fn cause(&self, component: u32) -> Cause {
+        self.played.iter().find(|(concerned, _)| *concerned == component).map(|(_, cause)| *cause).unwrap_or_default()
     }
 
     /// A time of a component's own clock, on that of the run.
@@ -63,12 +76,14 @@ mod tests {
     #[test]
     fn each_fault_comes_once_and_a_clock_goes_right_again() {
         let mut faults = TaskFaults::default();
-        faults.add(1, TaskFault::Fail);
-        faults.add(1, TaskFault::Stall(Duration::from_secs(1)));
+        faults.add(1, TaskFault::Fail, Cause(7));
+        faults.add(1, TaskFault::Stall(Duration::from_secs(1)), Cause(8));
         assert_eq!(faults.take(2), None);
         assert_eq!(faults.take(1), Some(TaskFault::Fail));
+        assert_eq!((faults.cause(1), faults.cause(2)), (Cause(7), Cause::default()));
         assert_eq!(faults.take(1), Some(TaskFault::Stall(Duration::from_secs(1))));
-        assert_eq!(faults.take(1), None);
+        assert_eq!((faults.cause(1), faults.take(1)), (Cause(8), None));
+        assert_eq!(faults.cause(1), Cause::default(), "its next execution has none");
         faults.drift(1, 250_000, 100);
         assert_eq!((faults.on_run(1, 1000, 99), faults.on_run(2, 1000, 99)), (800, 1000));
         faults.drift(2, -500_000, u64::MAX);

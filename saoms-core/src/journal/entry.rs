@@ -53,6 +53,7 @@ impl JournalEntry {
         time: Time,
         source: &str,
         (record, text): (&'static str, String),
+        cause: Cause,
     ) -> JournalEntry {
         JournalEntry {
             id,
@@ -60,7 +61,7 @@ impl JournalEntry {
             component: Arc::from(source),
             loop_name: None,
             phase: Phase::Symptom,
-            cause: Cause::default(),
+            cause,
             change: false,
             what: Content::Outside { id: record, text },
         }

@@ -16,11 +16,19 @@ pub struct ComponentName {
     /// Its `ID`; a passive component has none.
     #[serde(default)]
     pub id: Option<String>,
+    /// Its period in microseconds; a passive component has none, nor has any in journals of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period_us: Option<u64>,
 }
 
 impl ComponentName {
     pub(crate) fn of(spec: &ComponentSpec) -> ComponentName {
-        ComponentName { name: spec.path.clone(), id: spec.task.as_ref().map(|task| task.id.clone()) }
+        let task = spec.task.as_ref();
+        ComponentName {
+            name: spec.path.clone(),
+            id: task.map(|task| task.id.clone()),
+            period_us: task.map(|task| u64::try_from(task.period.as_micros()).unwrap_or(u64::MAX)),
+        }
     }
 }
 

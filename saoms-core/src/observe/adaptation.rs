@@ -3,9 +3,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use saoms_api::extension::{CurvesRegistration, RunCurves};
 use saoms_api::host::TopicDeclaration;
 use saoms_api::{Failure, Time};
-use saoms_lang::assembly::Assembly;
 
-use super::{Interest, Observer, Records, SentMessage};
+use super::{Beginning, Interest, Observer, Records, SentMessage};
 use crate::adaptation::{Adaptations, Samples};
 use crate::report::RunReport;
 
@@ -36,19 +35,16 @@ impl std::fmt::Debug for AdaptationWatch {
     }
 }
 
-impl AdaptationWatch {
-    /// One for a run of this fleet.
-    pub fn of(assembly: &Assembly) -> AdaptationWatch {
-        let tasks = assembly.components.iter().filter_map(|one| Some((one.path.clone(), one.task.as_ref()?.period)));
+impl Default for AdaptationWatch {
+    fn default() -> AdaptationWatch {
         let linked = CurvesRegistration::linked();
         let samples = Samples::new(linked.iter().flat_map(|one| one.curves).copied().collect());
         let all = linked.iter().map(|one| (one.new)()).collect();
-        AdaptationWatch {
-            adaptations: Mutex::new(Adaptations::new(tasks)),
-            curves: Mutex::new(Curves { all, samples }),
-        }
+        AdaptationWatch { adaptations: Mutex::default(), curves: Mutex::new(Curves { all, samples }) }
     }
+}
 
+impl AdaptationWatch {
     /// The curves of the run, after its end.
     pub fn samples(&self) -> Samples {
         self.curves().samples.clone()
@@ -68,8 +64,15 @@ impl Observer for AdaptationWatch {
         Interest { journal: true, ..Interest::NONE }
     }
 
+    fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
+        let mut adaptations = self.adaptations();
+        beginning.components.iter().for_each(|component| adaptations.join(component));
+        Ok(())
+    }
+
     fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
         let mut adaptations = self.adaptations();
+        records.joined.iter().for_each(|component| adaptations.join(component));
         records.entries.iter().for_each(|entry| adaptations.take(entry));
         Ok(())
     }

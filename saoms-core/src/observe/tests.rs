@@ -152,7 +152,7 @@ fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_cou
     let large = Arc::new(FailingObserver { room: 99, records: AtomicUsize::new(0) });
     let observers = Observers::new(vec![small, large.clone()]);
     let queue = RecordQueue::new(true);
-    queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
+    queue.join(ComponentName { name: "A".to_owned(), id: None, period_us: None }, false);
     queue.put(0, &recorder(5));
     queue.close(Time::START);
     let said = AtomicU64::new(0);
@@ -167,7 +167,7 @@ fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_cou
 #[test]
 fn nothing_is_delivered_while_there_are_no_records() {
     let queue = Arc::new(RecordQueue::new(false));
-    queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
+    queue.join(ComponentName { name: "A".to_owned(), id: None, period_us: None }, false);
     let reader = Arc::clone(&queue);
     let delivered = thread::spawn(move || {
         let (mut entries, mut joined, mut delivered) = (Vec::new(), Vec::new(), Vec::new());
@@ -194,10 +194,10 @@ fn in_real_time_records_that_find_no_room_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("journal");
     let file = Arc::new(JournalFile::new(&path));
-    let components = [ComponentName { name: "A".to_owned(), id: None }];
+    let components = [ComponentName { name: "A".to_owned(), id: None, period_us: None }];
     file.begin(&Beginning { seed: 1, is_virtual: false, components: &components }).unwrap();
     let queue = RecordQueue::new(false);
-    queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
+    queue.join(ComponentName { name: "A".to_owned(), id: None, period_us: None }, false);
     let recorder = recorder(1000);
     for _ in 0..70 {
         queue.put(0, &recorder);

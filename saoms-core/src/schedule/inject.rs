@@ -345,8 +345,8 @@ impl Engine {
                 }
                 Due::Fault(fault, text) => {
                     self.injections.faults -= 1;
-                    self.record_outside(when, OUTSIDE_NAME, text);
-                    self.begin_fault(&fault.call, &fault.site, when);
+                    let cause = self.record_outside(when, OUTSIDE_NAME, text);
+                    self.begin_fault((&fault.call, cause), &fault.site, when);
                 }
                 Due::Late { topic, message } => {
                     self.arrive(topic, message, now);
@@ -437,14 +437,14 @@ impl Engine {
 
     /// Writes an event to the journal, as the root of what follows from it.
     pub(super) fn record_outside(&mut self, time: u64, by: &str, text: String) -> Cause {
-        self.record_root(time, by, (FROM_OUTSIDE, text))
+        self.record_notice(time, by, (FROM_OUTSIDE, text), Cause::default())
     }
 
-    /// The same with the id of the record.
-    pub(super) fn record_root(&mut self, time: u64, by: &str, what: (&'static str, String)) -> Cause {
+    /// Writes a symptom that no component wrote to the journal: with its id, and what it follows from.
+    pub(super) fn record_notice(&mut self, time: u64, by: &str, what: (&'static str, String), cause: Cause) -> Cause {
         // Components draw the numbers of their records from the same counter.
         let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
-        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), by, what);
+        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), by, what, cause);
         if let Some(records) = &self.records {
             records.put_outside(entry.clone());
         }

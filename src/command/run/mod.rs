@@ -285,7 +285,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths, &assembly)));
     // Nobody else asks for it, and it takes all records of the journal.
     let is_measured = report.is_some() || timeline.is_some();
-    let adaptation = is_measured.then(|| Arc::new(AdaptationWatch::of(&assembly)));
+    let adaptation = is_measured.then(|| Arc::new(AdaptationWatch::default()));
     let timeline = timeline.zip(adaptation.clone());
     let timeline = timeline.map(|(output, watch)| Arc::new(TimelineFile { output, title: title(arguments), watch }));
     // At the end, they write in this order.

@@ -110,7 +110,7 @@ impl Simulation {
         let settings = Settings { limit: Some(self.limit), journal: 0, ..Settings::simulated(seed) };
         let mut observers = vec![Arc::clone(&watch) as Arc<dyn Observer>];
         if self.is_measured {
-            observers.push(Arc::new(AdaptationWatch::of(&self.assembly)));
+            observers.push(Arc::new(AdaptationWatch::default()));
         }
         let fleet = match RunningFleet::start(self.assembly.clone(), settings, observers) {
             Ok(fleet) => fleet,

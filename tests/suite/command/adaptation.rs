@@ -21,12 +21,18 @@ fn the_page_shows_the_table_of_the_airport() {
     let run = ["run", "composites/airport.composite", "--virtual", "--report", report.to_str().unwrap()];
     let table = table(&stdout(&saoms(&run)));
     let page = project("docs/adaptation.md");
-    assert!(!table.is_empty() && page.contains(&table), "{table}");
+    // The rows between the command and the end of the block.
+    let (before, rest) = page.split_once("--timeline docs/airport-timeline.svg\n").unwrap();
+    let (_, after) = rest.split_once("```").unwrap();
+    let expected = format!("{before}--timeline docs/airport-timeline.svg\n{table}```{after}");
+    expect_file!["../../../docs/adaptation.md"].assert_eq(&expected);
     let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
     let kinds = report["adaptation"]["kinds"].as_array().unwrap();
     let breakdown = kinds.iter().find(|kind| kind["kind"] == "robot_breaks_down").unwrap();
-    assert_eq!(breakdown["settle_s"]["p50"], 1.82, "{breakdown}");
-    assert_eq!(report["adaptation"]["events"].as_array().unwrap().len(), 25);
+    let events = report["adaptation"]["events"].as_array().unwrap();
+    let event = events.iter().find(|event| event["kind"] == "robot_breaks_down").unwrap();
+    assert_eq!(breakdown["settle_s"]["p50"], event["settle_s"], "{breakdown}");
+    assert!(event["settle_s"].as_f64() > event["detect_s"].as_f64(), "{event}");
 }
 
 #[test]
@@ -42,8 +48,8 @@ fn the_page_shows_the_timeline_of_the_airport() {
     assert_eq!(of_class("heading"), ["finished per minute", "open", "robots", "battery, %"]);
     assert_eq!(of_class("guide").len(), 3, "a landing, a take-off and a breakdown");
     let tooltips = document.descendants().filter(|node| node.has_tag_name("title")).filter_map(|node| node.text());
-    let told = "robot_breaks_down at 2.000 s, detected after 0.100 s, decided after 0.100 s, first effect after 0.100 s, settled after 1.820 s";
-    assert!(tooltips.into_iter().any(|text| text == told), "{drawn}");
+    let told = "robot_breaks_down at 2.000 s, detected after 0.100 s, decided after 0.100 s, first effect after 0.100 s, settled after ";
+    assert!(tooltips.into_iter().any(|text| text.starts_with(told)), "{drawn}");
 }
 
 #[test]
@@ -105,9 +111,14 @@ fn faults_of_messages_and_components_are_events() {
     let run = ["run", "airport.composite", "--virtual", "--faults", "faults.txt", "--short-report"];
     let output = saoms_in(&folder, &[&run[..], &["--report", "report.json"]].concat());
     let table = table(&text(&output));
-    for kind in ["component_failed ", "crash ", "lose "] {
-        assert!(table.lines().any(|line| line.starts_with(kind)), "{kind}: {table}");
-    }
+    let row = |kind: &str| {
+        let row = table.lines().find(|line| line.starts_with(kind)).unwrap_or_default();
+        row.split_whitespace().map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(row("lose ")[..6], ["lose", "1", "-", "-", "-", "-"], "{table}");
+    let crash = row("crash ");
+    assert!(crash[2] != "-" && crash[4] != "-" && crash[5] != "-", "the others adapt to the failure: {table}");
+    assert!(!table.contains("component_failed"), "{table}");
     let report: Value = serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
     assert_eq!(report["adaptation"]["events"], serde_json::json!([]), "it is short");
 }

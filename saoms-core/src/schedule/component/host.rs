@@ -233,8 +233,8 @@ impl Host for ComponentHost<'_> {
         if FaultCall::is_one(event) {
             let call = FaultCall::read(event).map_err(|fault| refused(&fault))?;
             let mut engine = self.shared.lock();
-            engine.record_outside(self.part.now, &self.part.name, event.to_owned());
-            engine.begin_fault(&call, &self.part.spec.site, self.part.now);
+            let cause = engine.record_outside(self.part.now, &self.part.name, event.to_owned());
+            engine.begin_fault((&call, cause), &self.part.spec.site, self.part.now);
             self.shared.release(engine);
             self.part.recorder.acted();
             return Ok(());

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use saoms_api::Cause;
 use saoms_api::event::fault::FaultCall;
 use saoms_api::host::{SharedMessage, TopicKind};
 
@@ -17,9 +18,9 @@ fn end(number: u32, slot: &Slot) -> End<'_> {
 }
 
 impl Engine {
-    /// Begins a fault.
+    /// Begins a fault, which the journal has as the record `cause`.
     #[cold]
-    pub(crate) fn begin_fault(&mut self, call: &FaultCall, site: &str, now: u64) {
+    pub(crate) fn begin_fault(&mut self, (call, cause): (&FaultCall, Cause), site: &str, now: u64) {
         self.note(now, Occurrence::Fault(call.clone()));
         if call.kind.is_of_messages() {
             self.faults.begin_messages(call, site, now);
@@ -34,7 +35,7 @@ impl Engine {
                 && call.to.iter().any(|word| saoms_api::event::fault::is_named(&word.text, &slot.name))
         };
         let named = (0..).zip(&self.slots).filter(|(_, slot)| is_named(slot)).map(|(number, _)| number);
-        self.faults.begin_tasks(call, named, now);
+        self.faults.begin_tasks((call, cause), named, now);
     }
 
     /// Gives the readers of a topic that faults concern links of their own.

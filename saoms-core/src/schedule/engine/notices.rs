@@ -31,7 +31,7 @@ impl Engine {
             }
             let name = std::sync::Arc::clone(&slot.name);
             let (bytes, text) = (notice.message)(outage);
-            let cause = self.record_root(now, &name, (COMPONENT_FAILED, text));
+            let cause = self.record_notice(now, &name, (COMPONENT_FAILED, text), self.faults.cause(index));
             self.standstill.note_effect(now);
             for topic in topics {
                 self.deliver_injection(now, cause, topic, (bytes.clone(), None, None), None);
