@@ -7,6 +7,7 @@
 
 mod luggage;
 mod robots;
+mod strain;
 mod tide;
 
 use std::collections::{BTreeMap, HashMap};
@@ -18,7 +19,8 @@ use saoms_api::extension::{Counts, InvariantsRegistration, Measure, RunInvariant
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use crate::messages::{
-    AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, EVENT_LUGGAGE, FAULT, POSITION, REMOVAL, ROBOT_LIST, carries,
+    AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, DRAIN, EVENT_LUGGAGE, FAULT, OUTAGE, POSITION, REMOVAL,
+    ROBOT_LIST, SLOW, carries,
 };
 use luggage::Pieces;
 use robots::Robots;
@@ -54,6 +56,9 @@ enum Content {
     Removal,
     Critical,
     Assignment,
+    Slow,
+    Drain,
+    Outage,
 }
 
 /// The invariants of one run. Each site has robots and luggage of its own.
@@ -98,6 +103,9 @@ fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
         one if carries(one, &REMOVAL) => Content::Removal,
         one if carries(one, &CRITICAL_SITUATION) => Content::Critical,
         one if carries(one, &ASSIGNMENT) => Content::Assignment,
+        one if carries(one, &SLOW) => Content::Slow,
+        one if carries(one, &DRAIN) => Content::Drain,
+        one if carries(one, &OUTAGE) => Content::Outage,
         _ => return None,
     })
 }
@@ -146,6 +154,9 @@ impl RunInvariants for FleetInvariants {
                 self.tide.rise(at);
                 robots.hear_fault(message);
             }
+            Content::Slow => self.tide.rise_until(robots.hear_slow(message)),
+            Content::Drain => self.tide.rise_until(robots.hear_drain(message)),
+            Content::Outage => self.tide.rise_until(robots.hear_outage(message)),
             Content::Assignment => pieces.hear_assignment(message, at),
             Content::Removal => pieces.hear_removal(message, at),
             Content::Critical => {

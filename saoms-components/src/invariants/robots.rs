@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use saoms_api::Time;
 use saoms_api::host::SharedMessage;
 
+use super::strain::{Outages, Supply};
 use super::tide::Tide;
 use super::{BATTERY, Finder, MOVES, NO_DEADLOCK, NO_SWAP, ONE_IN_A_BLOCK, bound};
 use crate::grid::{Block, Map};
@@ -18,6 +19,7 @@ use crate::messages::{
 pub(super) struct Robots {
     map: Option<Map>,
     all: BTreeMap<u32, Robot>,
+    outages: Outages,
 }
 
 #[derive(Debug, Default)]
@@ -30,6 +32,7 @@ struct Robot {
     /// True if it is out of service, so that nothing is expected of it.
     is_out: bool,
     is_empty: bool,
+    supply: Supply,
     stands_still: bool,
 }
 
@@ -75,12 +78,24 @@ impl Robots {
         if state.active {
             robot.is_out = false;
         }
+        robot.supply.hear(state, (finder.at, robot.moved), tide, &self.outages);
         let is_empty = state.active && state.is_out_of_battery();
         // Under a fault that has lasted for long, it could not go to its charger.
-        if is_empty && !robot.is_empty && tide.calm(Time::START, finder.at).is_some() {
+        let is_fault = tide.calm(Time::START, finder.at).is_none() || robot.supply.is_excused();
+        if is_empty && !robot.is_empty && !is_fault {
             finder.note(BATTERY, format!("the battery of robot {} is empty, and it is not at a charger", state.robot));
         }
         robot.is_empty = is_empty;
+    }
+
+    /// The battery of a robot.
+    pub(super) fn supply(&mut self, robot: u32) -> &mut Supply {
+        &mut self.all.entry(robot).or_default().supply
+    }
+
+    /// The chargers that give nothing.
+    pub(super) fn outages(&mut self) -> &mut Outages {
+        &mut self.outages
     }
 
     pub(super) fn hear_luggage(&mut self, message: &SharedMessage, at: Time) {

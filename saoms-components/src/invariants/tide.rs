@@ -19,6 +19,14 @@ impl Tide {
         self.until = self.until.max(at);
     }
 
+    /// Notes a fault until a time, or without an end.
+    pub(super) fn rise_until(&mut self, until: Option<Time>) {
+        match until {
+            Some(until) => self.rise(until),
+            None => self.is_endless = true,
+        }
+    }
+
     pub(super) fn begin(&mut self, at: Time, call: &FaultCall) {
         let lasting = match call.kind {
             FaultKind::Fail => Some(Duration::ZERO),
@@ -26,10 +34,7 @@ impl Tide {
             _ => call.lasting,
         };
         self.loses_events |= matches!(call.kind, FaultKind::Violate(_));
-        match lasting {
-            Some(time) => self.rise(at + time),
-            None => self.is_endless = true,
-        }
+        self.rise_until(lasting.map(|time| at + time));
     }
 
     /// The time for which something has not happened since `since`, without faults; `None` under faults.

@@ -5,6 +5,7 @@ mod environment;
 mod jobs;
 mod movement;
 mod passage;
+mod strain;
 mod team;
 mod visit;
 
@@ -15,6 +16,7 @@ pub use environment::*;
 pub use jobs::*;
 pub use movement::*;
 pub use passage::*;
+pub use strain::*;
 pub use team::*;
 pub use visit::*;
 

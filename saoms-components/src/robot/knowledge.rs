@@ -10,6 +10,7 @@ use crate::validation::MessageValidator;
 use super::actions::Outcome;
 use super::hardware_client::HardwareClient;
 use super::safe::{Energy, Leg, RESERVE, Traffic};
+use super::strain::Strain;
 use super::tally::Tally;
 use super::zone_client::ZoneClient;
 use super::{Battery, Job, Lists, Policy, Routes};
@@ -57,6 +58,8 @@ pub struct RobotKnowledge {
     /// Battery level of the robot. It counts by itself; a loop that measures the battery sets it.
     #[entry(name = "battery", unit = "%")]
     pub(super) charge: f64,
+    /// Faults that scenarios put into the battery and its chargers.
+    pub(super) strain: Strain,
     /// Battery level when this execution began.
     pub(super) level_before: f64,
     /// True if the battery was not full, and gains in this execution.
@@ -185,6 +188,7 @@ impl RobotKnowledge {
             charge: battery.percent(),
             level_before: battery.percent(),
             battery,
+            strain: Strain::default(),
             charging: false,
             lasts: 0,
             way_home: 0,

@@ -10,6 +10,7 @@ use super::knowledge::{JobEnd, RobotKnowledge, Trouble, Variables};
 use super::lists::ListsMemory;
 use super::routes::RoutesMemory;
 use super::safe::{Energy, Leg, TrafficMemory};
+use super::strain::Strain;
 use super::tally::Tally;
 use super::zone_client::ZoneMemory;
 use crate::grid::Block;
@@ -25,6 +26,7 @@ struct Memory {
     wanted: Option<Block>,
     charge_block: Block,
     battery: BatteryMemory,
+    strain: Strain,
     reserve: u32,
     must_charge: bool,
     job: Option<Job>,
@@ -93,6 +95,7 @@ impl RobotKnowledge {
                 charge_at: self.charge_at,
                 asked_to_charge: self.asked_to_charge,
             },
+            strain: self.strain.clone(),
             reserve: self.reserve,
             must_charge: self.must_charge,
             job: self.job,
@@ -131,6 +134,7 @@ impl RobotKnowledge {
         self.tally = Tally { delivered, blocks, waited: Duration::from_nanos(waited_ns) };
         (self.block, self.next, self.wanted) = (memory.block, memory.next, memory.wanted);
         self.charge_block = memory.charge_block;
+        self.strain = memory.strain;
         self.battery.set_percent(memory.battery.percent);
         (self.charge, self.charging) = (memory.battery.shown, memory.battery.charging);
         (self.lasts, self.way_home) = (memory.battery.lasts, memory.battery.way_home);

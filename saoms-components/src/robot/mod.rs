@@ -24,16 +24,18 @@ mod receive;
 mod routes;
 pub mod safe;
 mod sayings;
+mod strain;
 mod tally;
 mod upkeep;
 mod zone_client;
 
-use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Time};
+use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Subscription, Time};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
 use crate::messages::{
-    ASSIGNMENT, COLLISION, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, POSITION, ROBOT_LIST, TERRITORY, VISIT,
+    ASSIGNMENT, COLLISION, DRAIN, Drain, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, OUTAGE, Outage, POSITION,
+    ROBOT_LIST, TERRITORY, VISIT,
 };
 
 pub use battery::{Battery, Consumption};
@@ -104,6 +106,12 @@ pub struct Robot {
     knowledge: Box<RobotKnowledge>,
     loops: Loops,
     topics: Topics,
+    /// The battery of a robot loses charge at once, or faster for a time.
+    #[takes("drain", DRAIN)]
+    drains: Subscription<Drain>,
+    /// A charger gives nothing for a time.
+    #[takes("outage", OUTAGE)]
+    outages: Subscription<Outage>,
 }
 
 impl Component for Robot {
@@ -121,7 +129,13 @@ impl Component for Robot {
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;
         knowledge.stopped = properties.stopped;
-        Ok(Robot { knowledge, loops: Loops::default(), topics: Topics::default() })
+        Ok(Robot {
+            knowledge,
+            loops: Loops::default(),
+            topics: Topics::default(),
+            drains: Subscription::default(),
+            outages: Subscription::default(),
+        })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -146,6 +160,7 @@ impl Component for Robot {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.knowledge.hear_strain(self.drains, self.outages, context);
         let Some(gone) = self.knowledge.hear_gone(&self.topics, context) else {
             return self.knowledge.leave_floor(context);
         };

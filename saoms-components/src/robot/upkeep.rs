@@ -3,7 +3,7 @@
 
 use saoms_api::{Context, Failure};
 
-use super::{Policy, RobotKnowledge};
+use super::{Battery, Policy, RobotKnowledge};
 
 impl RobotKnowledge {
     /// Begins an execution.
@@ -51,10 +51,13 @@ impl RobotKnowledge {
         if self.hardware.measures_battery() {
             // The level is known.
         } else if charges {
-            self.battery.charge(self.elapsed);
+            if self.strain.gives(self.block) {
+                self.battery.charge(self.elapsed);
+            }
         } else if drains && !(self.stopped && self.battery.drains_by_execution()) {
             // An execution stands for driving, which a stopped robot does not; time goes on.
-            self.battery.drain(self.elapsed);
+            let elapsed = self.elapsed;
+            self.discharge(|battery| battery.drain(elapsed));
         }
         self.charge = self.battery.percent();
     }
@@ -62,7 +65,7 @@ impl RobotKnowledge {
     /// Discharges the battery by a move to the next block.
     pub(super) fn use_battery_to_drive(&mut self) {
         if !self.hardware.measures_battery() {
-            self.battery.drive();
+            self.discharge(Battery::drive);
         }
         self.charge = self.battery.percent();
     }

@@ -50,4 +50,5 @@ saoms_api::fleet_rules!(
     zones::RULE,
     peers::FAULTS,
     peers::BROKER,
+    scenario::strain::RULE,
 );

@@ -24,6 +24,8 @@ pub(crate) enum Problem {
     Jump { from: Block, to: Block },
     /// A battery level that is no percentage.
     Battery { percent: f64 },
+    /// A factor by which nothing takes longer.
+    Factor { factor: f64 },
     /// A period that no component has.
     Period { micros: u64 },
     /// A response in place of a request, or a request in a robot's name.
@@ -51,6 +53,12 @@ impl Problem {
             true => Err(Problem::Blocked { block }),
             false => Ok(()),
         }
+    }
+
+    /// Checks a factor by which something takes longer, or more.
+    pub(crate) fn of_factor(factor: f64) -> Result<(), Problem> {
+        let is_one = factor.is_finite() && factor >= 1.0;
+        if is_one { Ok(()) } else { Err(Problem::Factor { factor }) }
     }
 
     /// Checks a request to bring luggage, or to visit blocks.
@@ -99,6 +107,9 @@ impl fmt::Display for Problem {
             }
             Problem::Battery { percent } => {
                 write!(formatter, "found a battery of {percent} %, expected 0 to 100")
+            }
+            Problem::Factor { factor } => {
+                write!(formatter, "found the factor {factor}, expected 1 or more")
             }
             Problem::Period { micros } => {
                 write!(formatter, "found a period of {micros} us, expected at most a day")

@@ -10,7 +10,8 @@ use crate::messages::{Collision, Removal};
 
 impl World {
     fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
-        let until = context.now() + self.properties.move_time;
+        let now = context.now();
+        let until = now + self.referee.lasting(robot, self.properties.move_time, now);
         match self.referee.begin_move(robot, to, until)? {
             Ok(collision) => {
                 if let Some(collision) = collision {
@@ -123,7 +124,9 @@ impl Hardware for World {
             warn!(context, "robot {robot} at {here} cannot reach {}", action.block);
             return Ok(Progress::Failed);
         }
-        self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;
+        let now = context.now();
+        let until = now + self.referee.lasting(robot, self.properties.handling_time, now);
+        self.referee.begin_handling(robot, action, until)?;
         self.poll(context, robot)
     }
 

@@ -1,10 +1,12 @@
 //! State of a world, for the one that takes its place after a failure.
 
+use std::time::Duration;
+
 use saoms_api::{Failure, Field, Message, Saved, Time, Work};
 
 use super::World;
 use super::luggage::{PieceMemory, Stock};
-use super::referee::{Body, Meeting, Referee};
+use super::referee::{Body, Meeting, Referee, Slowness};
 use crate::grid::Block;
 use crate::hardware::{Action, Progress};
 use crate::state::Numbers;
@@ -44,6 +46,8 @@ struct BodyMemory {
     gone: bool,
     entered: Time,
     entered_again: bool,
+    period_us: u64,
+    slow: Option<Slowness>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -86,6 +90,8 @@ impl BodyMemory {
             gone: body.gone,
             entered: body.entered,
             entered_again: body.entered_again,
+            period_us: u64::try_from(body.period.as_micros()).unwrap_or(u64::MAX),
+            slow: body.slow,
         }
     }
 
@@ -100,6 +106,9 @@ impl BodyMemory {
             gone: self.gone,
             entered: self.entered,
             entered_again: self.entered_again,
+            period: Duration::from_micros(self.period_us),
+            slow: self.slow,
+            moved: Time::START,
         };
         (self.robot, body)
     }

@@ -6,6 +6,7 @@ mod luggage;
 mod memory;
 mod properties;
 mod referee;
+mod strain;
 #[cfg(test)]
 mod tests;
 
@@ -18,8 +19,8 @@ use saoms_api::{
 use crate::grid::Block;
 use crate::hardware::Hardware;
 use crate::messages::{
-    AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, FaultKind,
-    LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList, is_visit,
+    AREA, COLLISION, Collision, DRAIN, Drain, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
+    FaultKind, LuggageStage, OUTAGE, Outage, REMOVAL, ROBOT_LIST, Removal, RobotList, SLOW, Slow, is_visit,
 };
 use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem};
@@ -56,6 +57,15 @@ pub struct World {
     robots: Subscription<RobotList>,
     #[subscribes(EVENT_LUGGAGE)]
     responses: Subscription<EventLuggage>,
+    /// The moves of a robot, collecting and depositing take longer by a factor, for a time.
+    #[takes("slow", SLOW)]
+    slowed: Subscription<Slow>,
+    /// The battery of a robot loses charge at once, or faster for a time.
+    #[takes("drain", DRAIN)]
+    drained: Subscription<Drain>,
+    /// A charger gives nothing for a time.
+    #[takes("outage", OUTAGE)]
+    outages: Subscription<Outage>,
     #[publishes(COLLISION)]
     collisions: Publisher<Collision>,
     #[publishes(REMOVAL)]
@@ -82,6 +92,9 @@ impl Component for World {
             events: Subscription::default(),
             robots: Subscription::default(),
             responses: Subscription::default(),
+            slowed: Subscription::default(),
+            drained: Subscription::default(),
+            outages: Subscription::default(),
             collisions: Publisher::default(),
             removals: Publisher::default(),
             vote: None,
@@ -131,8 +144,11 @@ impl Component for World {
         }
         // The components that speak for each robot.
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            self.validator.accepts(robot, header, Some(self.referee.map()), context);
+            if self.validator.accepts(robot, header, Some(self.referee.map()), context) {
+                self.referee.note_period(robot.robot, robot.period);
+            }
         }
+        self.take_strain(context);
         for (header, response) in context.receive(&self.responses).with_headers() {
             if !self.validator.accepts(response, header, Some(self.referee.map()), context) {
                 continue;

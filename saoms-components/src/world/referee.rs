@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use saoms_api::{Failure, Field, Time};
 
@@ -41,6 +42,21 @@ pub(super) struct Body {
     pub(super) handled: Option<(Action, Progress)>,
     /// True if it registered again, and has not shown yet whether it knows what it carries.
     pub(super) entered_again: bool,
+    /// Period of its component, as it says.
+    pub(super) period: Duration,
+    /// By what its actions take longer, and until when.
+    pub(super) slow: Option<Slowness>,
+    /// When its last move was over.
+    pub(super) moved: Time,
+}
+
+/// How slow a robot is.
+#[derive(Clone, Copy, Debug, PartialEq, Field)]
+pub(super) struct Slowness {
+    /// How many times as long its actions take.
+    pub(super) factor: f64,
+    /// When that ends; `None` is never.
+    pub(super) until: Option<Time>,
 }
 
 /// A robot that entered a block where another one was.
@@ -128,6 +144,9 @@ impl Referee {
                 entered: now,
                 handled: None,
                 entered_again: false,
+                period: Duration::ZERO,
+                slow: None,
+                moved: Time::START,
             },
         );
         Ok(block)
@@ -141,6 +160,35 @@ impl Referee {
     /// True if no robot is in this world.
     pub(super) fn is_empty(&self) -> bool {
         self.bodies.is_empty()
+    }
+
+    /// Notes the period of a robot, as it says.
+    pub(super) fn note_period(&mut self, robot: u32, micros: u64) {
+        if let Some(body) = self.bodies.get_mut(&robot) {
+            body.period = Duration::from_micros(micros);
+        }
+    }
+
+    /// Makes a robot slow. False if it is not in this world.
+    pub(super) fn slow_down(&mut self, robot: u32, slowness: Slowness) -> bool {
+        let body = self.bodies.get_mut(&robot);
+        body.map(|body| body.slow = Some(slowness)).is_some()
+    }
+
+    /// The time that an action takes which takes `usual` otherwise: of a slow robot so many times that, and at least so
+    /// many of its periods.
+    pub(super) fn lasting(&self, robot: u32, usual: Duration, now: Time) -> Duration {
+        let Some(body) = self.bodies.get(&robot) else { return usual };
+        let Some(slow) = body.slow else { return usual };
+        match Some(slow).filter(|slow| slow.until.is_none_or(|until| now < until)) {
+            // Not at once: in the execution in which a slow move ends it would be two blocks farther.
+            None if body.moved == now => usual.max(Duration::from_nanos(1)),
+            None => usual,
+            Some(slow) => {
+                let nanos = usual.max(body.period).as_nanos() as f64 * slow.factor;
+                Duration::from_nanos(nanos.round() as u64)
+            }
+        }
     }
 
     fn body(&self, robot: u32) -> Result<&Body, Failure> {
@@ -226,7 +274,7 @@ impl Referee {
             Some((_, until)) if now < until => Progress::Running,
             Some((to, _)) => {
                 let from = std::mem::replace(&mut body.block, to);
-                body.moving = None;
+                (body.moving, body.moved) = (None, now);
                 self.moving -= 1;
                 self.leave(robot, from);
                 Progress::Done

@@ -209,8 +209,8 @@ fn a_wrong_line_is_told_with_its_number_and_the_run_goes_on() {
     let yard = Yard::new();
     let (output, text) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], lines);
     assert!(output.status.success(), "{text}");
-    let first = "line 1 of the events is ignored: found `lugage`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone` or \
-                 `end`; did you mean `luggage`?\n    at 1s lugage (3,1) to (3,4)\n          ^^^^^^\n";
+    let first = "line 1 of the events is ignored: found `lugage`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, \
+                 `gone`, `end`, `drain`, `outage` or `slow`; did you mean `luggage`?\n    at 1s lugage (3,1) to (3,4)\n          ^^^^^^\n";
     assert!(text.contains(first), "{text}");
     assert!(text.contains("line 5 of the events is ignored: ") && !text.contains('\x1b'), "{text}");
     assert!(text.contains("ignores an event from outside (`--events`), "), "{text}");

@@ -16,6 +16,7 @@ mod physics;
 mod replace;
 mod shifts;
 mod slow;
+mod strain;
 mod sustained;
 mod visits;
 mod waiting;

@@ -13,7 +13,7 @@ use saoms_components as _;
 use saoms_lang::registry::{ClassTopic, Registry, inner_type};
 use serde_json::Value;
 
-use crate::support::root;
+use crate::support::{project, root};
 
 const HEAD: &str = "\
 # Messages
@@ -59,7 +59,8 @@ fn messages_are_documented() {
     for one in registry.loops().filter(|one| ships(one.name())) {
         add(one.name(), &one.declaration().publishes, &one.declaration().subscribes);
     }
-    let meanings = Meanings::of_sources(&root().join("saoms-components/src"));
+    let mut meanings = Meanings::of_sources(&root().join("saoms-components/src"));
+    meanings.add(&project("saoms-api/src/builtin_interfaces.rs"));
     let (mut page, mut types) = (HEAD.to_owned(), BTreeMap::new());
     for ends in topics.values() {
         page += &section(ends, &meanings, &mut types);
@@ -120,6 +121,8 @@ impl Meanings {
 
     /// The meaning of a field, which each has.
     fn get(&self, owner: &str, field: &str) -> &str {
+        // Types of packages of ROS 2 have their package before their name.
+        let owner = owner.rsplit('/').next().unwrap_or(owner);
         let found = self.0.get(&(owner.to_owned(), field.to_owned())).filter(|meaning| !meaning.is_empty());
         found.unwrap_or_else(|| panic!("`{owner}::{field}` has no docs"))
     }
@@ -190,7 +193,7 @@ fn type_name(of: &Value, types: &mut BTreeMap<String, Value>) -> String {
     }
     if let Some(name) = of["name"].as_str() {
         types.insert(name.to_owned(), of.clone());
-        return format!("[{name}](#{})", name.to_lowercase());
+        return format!("[{name}](#{})", name.to_lowercase().replace('/', ""));
     }
     let inner = inner_type(of).unwrap_or_else(|| panic!("a type without a name: {of}"));
     if let (Some(most), Some(element)) = (of.get("most"), inner.get("sequence")) {

@@ -34,7 +34,8 @@ pub(super) fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
     let mut all = Vec::new();
     let next = continuations(&before[..start]);
     if KINDS.iter().any(|kind| next.contains(&Continuation::Word(kind))) {
-        let event = |one: &Event| Completion::new(&one.name, CompletionKind::Keyword, &word).detail(&one.doc);
+        // Behind those of the language.
+        let event = |one: &Event| Completion::new(&one.name, CompletionKind::Keyword, &word).detail(&one.doc).rank(7);
         all.extend(events.iter().map(event));
     }
     let is_played = |one: &Continuation| match one {

@@ -7,7 +7,7 @@ use super::line::drawn;
 use super::random::{RandomRange, Spot};
 use super::tokenizer::Tokenizer;
 use super::vocabulary::Vocabulary;
-use super::{EventSpec, Spanned};
+use super::{EventSpec, Spanned, strain};
 use crate::grid::Block;
 use crate::text::TextFault;
 
@@ -70,7 +70,8 @@ fn of_class(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Result<Eve
         None => EventCall::read(rest).map_err(|_| unknown(words))?,
         Some(events) => {
             let Some(event) = events.get(name) else { return Err(unknown(words)) };
-            let call = EventCall::read(rest).and_then(|call| event.check(&call).map(|()| call));
+            let judge = |call| event.check(&call).and_then(|()| strain::check(event, &call)).map(|()| call);
+            let call = EventCall::read(rest).and_then(judge);
             call.map_err(|fault| text_fault(fault.moved(start)))?
         }
     };

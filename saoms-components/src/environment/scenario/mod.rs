@@ -8,6 +8,7 @@ mod language;
 pub(super) mod line;
 mod meant;
 mod random;
+mod strain;
 mod tokenizer;
 mod vocabulary;
 

@@ -1,5 +1,6 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record, warn};
 
+use super::gain::Gain;
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::lasting::lasting;
 use crate::robot::{RobotKnowledge, Trouble};
@@ -7,7 +8,8 @@ use crate::robot::{RobotKnowledge, Trouble};
 /// Returns to the charger in time, and leaves it when the battery lasts for the robot's work.
 ///
 /// The robot knows how many executions the battery lasts, and how many the way to the charger takes, with a reserve for
-/// waiting and making way. A job that ends before the battery is that low is finished.
+/// waiting and making way. A job that ends before the battery is that low is finished. A robot whose battery gains
+/// nothing at its charger takes another one, or waits there.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.BatteryMS",
@@ -28,6 +30,8 @@ pub struct SafeBattery {
     own: Option<Block>,
     /// Battery level that the journal has.
     noted: Option<f64>,
+    /// What the battery gains at the charger.
+    gain: Gain,
 }
 
 /// Change of the battery level that is written to the journal, in percent.
@@ -63,6 +67,15 @@ pub enum SafeBatterySymptom {
         /// Block of the other charger.
         other: Block,
     },
+    /// The battery gains nothing at the charger.
+    NoGain {
+        /// Block of the charger.
+        charger: Block,
+        /// Battery level in percent.
+        battery: f64,
+        /// Block of another charger, which is free and in reach.
+        other: Option<Block>,
+    },
     /// The battery at the charger has enough for the robot's work.
     Charged {
         /// Battery level in percent.
@@ -82,6 +95,8 @@ pub enum SafeBatterySymptom {
 pub enum SafeBatteryDecision {
     /// Go to the charger, in spite of the job.
     Charge,
+    /// Stay at the charger that gives nothing, until it does.
+    Wait,
     /// Stay at the block, and report that.
     Stop,
     /// Leave the charger.
@@ -119,6 +134,13 @@ impl Recordable for SafeBatterySymptom {
                     other
                 )
             }
+            SafeBatterySymptom::NoGain { charger, battery, .. } => {
+                record!(
+                    charger_gives_nothing: "battery gains nothing at its charger at {charger}: it stays at {battery} %",
+                    charger,
+                    battery
+                )
+            }
             SafeBatterySymptom::Charged { battery } => {
                 record!(charged_enough: "has charged to {battery} %", battery)
             }
@@ -136,6 +158,7 @@ impl Recordable for SafeBatteryDecision {
     fn record(&self) -> Record {
         match *self {
             SafeBatteryDecision::Charge => record!(goes_to_charge: "goes to charge"),
+            SafeBatteryDecision::Wait => record!(waits_at_charger: "waits there until it gives something"),
             SafeBatteryDecision::Stop => record!(stops_with_empty_battery: "stops where it is"),
             SafeBatteryDecision::Leave => record!(leaves_charger: "leaves its charger: the battery lasts for its work"),
             SafeBatteryDecision::Use(other) => record!(changes_charger: "charges at {other} from now on", other),
@@ -147,7 +170,14 @@ impl Recordable for SafeBatteryDecision {
 }
 
 lasting! {
-    SafeBattery as BatteryMemory { charging: bool, in_charge: bool, changes: u32, own: Option<Block>, noted: Option<f64> }
+    SafeBattery as BatteryMemory {
+        charging: bool,
+        in_charge: bool,
+        changes: u32,
+        own: Option<Block>,
+        noted: Option<f64>,
+        gain: Gain,
+    }
 }
 
 impl Loop for SafeBattery {
@@ -180,15 +210,22 @@ impl Loop for SafeBattery {
         }
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.must_charge;
-        let symptom = if knowledge.is_at_charger() {
-            let lasts = self.own.is_none_or(|own| knowledge.lasts_to(own));
+        let symptom = if let Some(symptom) = self.without_gain(knowledge, context) {
+            Some(symptom)
+        } else if knowledge.is_at_charger() {
+            let is_spared = |own: Block| self.gain.gives(own, context.now()) || knowledge.battery.is_full();
+            let spared = self.own.is_none_or(is_spared);
+            let lasts = spared && self.own.is_none_or(|own| knowledge.lasts_to(own));
             (must_charge && lasts && knowledge.may_leave()).then_some(SafeBatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
             context.because(knowledge.energy.turned);
             Some(SafeBatterySymptom::Empty)
         } else if must_charge {
             let charger = knowledge.charge_block;
-            let other = knowledge.charger_in_reach();
+            let other = match self.gain.gives(charger, context.now()) {
+                true => knowledge.charger_in_reach(),
+                false => knowledge.charger_elsewhere(|other| self.gain.gives(other, context.now())),
+            };
             other.map(|other| {
                 context.because(knowledge.energy.turned);
                 SafeBatterySymptom::OutOfReach { charger, other }
@@ -215,6 +252,8 @@ impl Loop for SafeBattery {
         Ok(Some(match symptom {
             SafeBatterySymptom::Low { .. } | SafeBatterySymptom::Asked => SafeBatteryDecision::Charge,
             SafeBatterySymptom::Empty => SafeBatteryDecision::Stop,
+            SafeBatterySymptom::NoGain { other: Some(other), .. } => SafeBatteryDecision::Borrow(other),
+            SafeBatterySymptom::NoGain { other: None, .. } => SafeBatteryDecision::Wait,
             SafeBatterySymptom::Charged { .. } => SafeBatteryDecision::Leave,
             SafeBatterySymptom::CutOff { other, .. } => SafeBatteryDecision::Use(other),
             SafeBatterySymptom::OutOfReach { other, .. } => SafeBatteryDecision::Borrow(other),
@@ -231,7 +270,7 @@ impl Loop for SafeBattery {
         // In addition to any other decision, so that the journal has it.
         knowledge.variables.in_charge = self.in_charge;
         match decision {
-            SafeBatteryDecision::BeInCharge(_) => {}
+            SafeBatteryDecision::BeInCharge(_) | SafeBatteryDecision::Wait => {}
             SafeBatteryDecision::Charge => {
                 knowledge.energy.turned = context.cause();
                 knowledge.turn_back();
@@ -257,9 +296,12 @@ impl Loop for SafeBattery {
                 info!(context, "charges at {other} from now on");
             }
             SafeBatteryDecision::Borrow(other) => {
-                self.own = self.own.or(Some(knowledge.charge_block));
+                let charger = knowledge.charge_block;
+                let why = if self.gain.gives(charger, context.now()) { "is out of reach" } else { "gives nothing" };
+                self.own = self.own.or(Some(charger));
+                knowledge.turn_back();
                 knowledge.use_charger(other);
-                info!(context, "charges at {other} this time: its own is out of reach");
+                info!(context, "charges at {other} this time: its own {why}");
             }
         }
         Ok(())
@@ -280,6 +322,22 @@ impl RobotKnowledge {
         self.charge_block = charger;
         let others = self.lists.chargers.iter().map(|(_, charger)| *charger);
         self.routes.use_charger(charger, others);
+    }
+
+    /// The closest free charger, if the battery lasts for the way to it.
+    fn charger_elsewhere(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
+        if self.next != self.block {
+            return None;
+        }
+        let RobotKnowledge { lists, routes, next, charge_block, .. } = self;
+        let is_free = |charger: &Block| {
+            charger != charge_block && !routes.is_obstacle(*charger) && lists.peers.on(*charger).is_none()
+        };
+        let free: Vec<Block> =
+            lists.charging_places.iter().copied().filter(is_free).filter(|one| gives(*one)).collect();
+        let ways = free.into_iter().map(|charger| (routes.between(*next, charger), charger));
+        let (way, closest) = ways.min()?;
+        (way != UNREACHABLE && self.executions_left() > self.home_to(closest)).then_some(closest)
     }
 
     /// The closest free charger that is closer than the robot's own, if the battery does not last for the way to its
@@ -315,6 +373,24 @@ impl RobotKnowledge {
 }
 
 impl SafeBattery {
+    /// The symptom of a charger that gives nothing: at first, and now and then once another one may be free.
+    fn without_gain(
+        &mut self,
+        knowledge: &mut RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Option<SafeBatterySymptom> {
+        let (charger, battery) = (knowledge.charge_block, knowledge.charge);
+        let is_first = self.gain.note(knowledge, context)?;
+        if is_first {
+            context.count("chargers.without_gain", 1);
+            warn!(context, "battery gains nothing at its charger at {charger}: it stays at {battery:.1} %");
+        }
+        let needs = (knowledge.must_charge || !knowledge.is_well_charged()) && !knowledge.variables.asleep;
+        let now = context.now();
+        let other = needs.then(|| knowledge.charger_elsewhere(|other| self.gain.gives(other, now))).flatten();
+        (is_first || other.is_some()).then_some(SafeBatterySymptom::NoGain { charger, battery, other })
+    }
+
     /// Sees whether the battery gains.
     fn look_at_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
         if !knowledge.is_at_charger() {
@@ -328,7 +404,7 @@ impl SafeBattery {
             context.console(format_args!("{name} says: I've arrived to charge position."));
             info!(context, "starts charging (battery {battery:.1} %)");
         }
-        if !charging && charged {
+        if !charging && charged && knowledge.battery.is_full() {
             let (name, asleep) = (&knowledge.name, knowledge.variables.asleep);
             let still = if asleep { " (but still asleep)" } else { "" };
             context.console(format_args!("{name} is now fully charged and ready{still}"));

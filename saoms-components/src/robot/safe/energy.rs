@@ -169,6 +169,11 @@ impl RobotKnowledge {
         self.executions_left() < wanted.min(self.executions_when_full())
     }
 
+    /// True if three quarters of the battery are full.
+    pub(super) fn is_well_charged(&self) -> bool {
+        self.battery.is_full() || self.executions_left() >= self.executions_when_full() / 4 * 3
+    }
+
     /// True if the robot need not return to its charger yet: the battery lasts to do so later, or to finish its job
     /// before.
     pub(super) fn goes_on(&mut self) -> bool {

@@ -14,6 +14,7 @@ mod collision;
 mod critical;
 mod energy;
 mod event_luggage;
+mod gain;
 mod gripper;
 mod leg;
 mod pace;

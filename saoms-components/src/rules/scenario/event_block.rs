@@ -18,7 +18,9 @@ const BLOCK: &str = "Block";
 pub(super) fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let taken = fleet.components().iter().flat_map(|one| &one.class.takes);
     let taken: HashMap<&str, &Event> =
-        taken.filter(|one| one.fields.iter().any(is_block)).map(|one| (one.name.as_str(), one)).collect();
+        // Where chargers are, another rule tells.
+        taken.filter(|one| one.name != "outage" || !one.classes.iter().any(|class| class == "saoms.World"))
+        .filter(|one| one.fields.iter().any(is_block)).map(|one| (one.name.as_str(), one)).collect();
     if taken.is_empty() {
         return Vec::new();
     }

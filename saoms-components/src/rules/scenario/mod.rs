@@ -5,5 +5,6 @@ pub(super) mod early_end;
 mod event_block;
 pub(super) mod luggage;
 pub(crate) mod no_work;
+pub(super) mod strain;
 pub(super) mod unknown_robot;
 pub(super) mod unserved;

@@ -6,7 +6,8 @@ use std::ops::Range;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
-use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
+use super::strain;
+use crate::environment::{Environment, EventSpec, RandomRange, Scenario, Spanned};
 use crate::messages::{ENVIRONMENT, FAULT};
 use crate::robot::Robot;
 use crate::rules::budget::Budget;
@@ -45,10 +46,17 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         // Built on demand, since most scenarios have no breakdowns.
         let mut known: Option<Names<'_>> = None;
         for line in scenario.lines() {
-            let (EventSpec::Breakdown(robot) | EventSpec::Gone(robot) | EventSpec::Visit { by: Some(robot), .. }) =
-                &line.event
-            else {
-                continue;
+            let robot = match &line.event {
+                EventSpec::Breakdown(robot) | EventSpec::Gone(robot) | EventSpec::Visit { by: Some(robot), .. } => {
+                    robot.clone()
+                }
+                event => match strain::robots_of(fleet, event) {
+                    Some((value, field)) => {
+                        let start = line.bytes.start;
+                        Spanned { value, bytes: start + field.value.bytes.start..start + field.value.bytes.end }
+                    }
+                    None => continue,
+                },
             };
             if known.is_none() && !budget.admit(NAME * robots.len()) {
                 return findings;

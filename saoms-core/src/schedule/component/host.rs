@@ -161,13 +161,18 @@ impl Host for ComponentHost<'_> {
                 topic.name
             )));
         };
-        let mut engine = self.shared.lock();
         let name = self.spec().topic(topic.name);
+        // Events from outside have no publisher.
+        let takes = self.spec().class.declaration().takes.iter().any(|taken| taken.topic == topic.name);
+        let observers = if takes { self.shared.observers.of_topic(&name, topic) } else { Vec::new() };
+        let mut engine = self.shared.lock();
         self.is_as_declared(topic, TopicUse::Subscribe, engine.bus.find(&name).is_none())?;
         let fresh = engine
             .bus
             .subscribe(&name, topic, &self.part.name, task.queue)
             .map_err(|mismatch| self.differs(topic, TopicUse::Subscribe, mismatch))?;
+        let id = engine.bus.topic_of(&fresh);
+        engine.bus.observe(id, &observers);
         // An instance that replaces a failed one gets the events that came meanwhile.
         let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
         let triggers = task.trigger.has(topic.name);

@@ -1,0 +1,96 @@
+//! What excuses an empty battery: a fault drains it, takes the charger of its robot, or keeps the robot from its way.
+
+use saoms_api::Time;
+use saoms_api::host::SharedMessage;
+
+use super::robots::Robots;
+use super::tide::Tide;
+use crate::grid::Block;
+use crate::messages::{Drain, Outage, RobotList, Slow, end_of};
+
+/// What a robot loses where faults keep it at its block, in percent of its battery, from which on they are why the
+/// battery is empty.
+const KEPT: f64 = 10.0;
+
+/// The battery of a robot, as it says.
+#[derive(Debug, Default)]
+pub(super) struct Supply {
+    /// In percent.
+    level: f64,
+    /// When that was said.
+    said: Time,
+    /// What it has lost at blocks where faults kept it, since it was charged, in percent.
+    kept: f64,
+    /// The end of the faults that drain it or took its charger since it was charged; the inner `None` is never.
+    strained: Option<Option<Time>>,
+}
+
+impl Supply {
+    /// Notes a fault that drains the battery, or takes the charger, until a time.
+    fn strain(&mut self, until: Option<Time>) {
+        self.strained = Some(match self.strained {
+            Some(before) => before.zip(until).map(|(one, other)| one.max(other)),
+            None => until,
+        });
+    }
+
+    /// Notes what the robot says. `moved` is when it entered its block.
+    pub(super) fn hear(&mut self, state: &RobotList, (at, moved): (Time, Time), tide: &Tide, outages: &Outages) {
+        if let Some(until) = outages.of(state.charger, at) {
+            self.strain(until);
+        }
+        if state.battery > self.level {
+            self.kept = 0.0;
+            self.strained = self.strained.filter(|until| until.is_none_or(|until| at < until));
+        } else if moved <= self.said && tide.calm(Time::START, at).is_none() {
+            self.kept += self.level - state.battery;
+        }
+        (self.level, self.said) = (state.battery, at);
+    }
+
+    /// True if faults are why the battery is empty.
+    pub(super) fn is_excused(&self) -> bool {
+        self.strained.is_some() || self.kept >= KEPT
+    }
+}
+
+/// Chargers that give nothing, and until when.
+#[derive(Debug, Default)]
+pub(super) struct Outages(Vec<(Block, Option<Time>)>);
+
+impl Outages {
+    /// The end of the outage of a charger.
+    fn of(&self, charger: Block, at: Time) -> Option<Option<Time>> {
+        let is_on = |until: Option<Time>| until.is_none_or(|until| at < until);
+        self.0.iter().find(|(block, until)| *block == charger && is_on(*until)).map(|(_, until)| *until)
+    }
+}
+
+impl Robots {
+    /// Notes a robot that is slow; gives the end of that.
+    pub(super) fn hear_slow(&mut self, message: &SharedMessage) -> Option<Time> {
+        let at = message.header().sent;
+        let Some(Slow { robot, lasting, .. }) = message.get::<Slow>() else { return Some(at) };
+        // It set out with another pace. Once it has charged it knows this one.
+        self.supply(*robot).strain(Some(at));
+        end_of(at, lasting.as_ref())
+    }
+
+    /// Notes a battery that a fault drains; gives the end of that.
+    pub(super) fn hear_drain(&mut self, message: &SharedMessage) -> Option<Time> {
+        let at = message.header().sent;
+        let Some(Drain { robot, factor, lasting, .. }) = message.get::<Drain>() else { return Some(at) };
+        let until = if factor.is_some() { end_of(at, lasting.as_ref()) } else { Some(at) };
+        self.supply(*robot).strain(until);
+        until
+    }
+
+    /// Notes a charger that gives nothing; gives the end of that.
+    pub(super) fn hear_outage(&mut self, message: &SharedMessage) -> Option<Time> {
+        let at = message.header().sent;
+        let Some(Outage { charger, lasting }) = message.get::<Outage>() else { return Some(at) };
+        let until = end_of(at, lasting.as_ref());
+        self.outages().0.push((*charger, until));
+        until
+    }
+}
