@@ -43,6 +43,8 @@
 //!
 //! The components that ship are linked in; a crate with its own links them by naming it: `use my_robot as _;`.
 
+#[cfg(feature = "fleets")]
+mod adaptation;
 mod bench;
 mod comply;
 #[cfg(feature = "fleets")]
