@@ -17,6 +17,8 @@ pub(super) struct EventLog {
     free: Vec<u32>,
     /// Number of messages at which those that all readers have read are removed next.
     tidy_at: usize,
+    /// Number of readers that have left since messages were removed.
+    left: usize,
     /// Number of messages that may wait for a reader whose queue grows with the users of the topic.
     grown: u64,
 }
@@ -51,7 +53,15 @@ impl EventReader {
 impl Default for EventLog {
     fn default() -> EventLog {
         let grown = TaskProperties::default_queue(0) as u64;
-        EventLog { first: 0, messages: VecDeque::new(), readers: Vec::new(), free: Vec::new(), tidy_at: 0, grown }
+        EventLog {
+            first: 0,
+            messages: VecDeque::new(),
+            readers: Vec::new(),
+            free: Vec::new(),
+            left: 0,
+            tidy_at: 0,
+            grown,
+        }
     }
 }
 
@@ -120,7 +130,11 @@ impl EventLog {
         let lost = reader.lost;
         reader.queue = 0;
         self.free.push(place);
-        self.tidy();
+        self.left += 1;
+        // Once for as many readers, since it looks at all: a fleet that ends has many.
+        if self.free.len() == self.readers.len() || self.left > self.readers.len() / 4 {
+            self.tidy();
+        }
         lost
     }
 
@@ -139,6 +153,7 @@ impl EventLog {
     /// Removes the messages that every reader has read. The cost is linear in the number of readers, and is paid once
     /// in as many messages.
     fn tidy(&mut self) {
+        self.left = 0;
         let (end, grown) = (self.end(), self.grown);
         let mut needed = end;
         for reader in self.readers.iter_mut().filter(|reader| reader.queue > 0) {

@@ -21,7 +21,7 @@ pub struct Settings {
     /// kept out of their deep idle states. Real time only. It is for fleets that leave the processor much time: one
     /// that never pauses loses its priority, and the kernel lets real-time threads have 95 % of the time at most.
     pub realtime: bool,
-    /// Maximum time for the shutdown of components; a component that takes longer is abandoned.
+    /// Maximum time for the shutdown of a component, since the last one that ended; one that takes longer is abandoned.
     pub grace: Duration,
     /// Maximum duration of an execution in virtual time, on the machine's clock; beyond it the run ends as failed. At
     /// least 10 ms.

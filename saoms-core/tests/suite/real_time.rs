@@ -274,6 +274,14 @@ fn who_does_not_end_in_time_is_left_behind_when_the_time_of_the_run_is_over() {
 }
 
 #[test]
+fn each_component_of_many_has_the_time_to_end() {
+    let settings = Settings { grace: Duration::from_millis(400), ..real(50) };
+    let fleet: Vec<String> = (0..30).map(|number| format!("C{number} actor period=10 last=[sleep 40]")).collect();
+    let (report, _) = run(&fleet.join("\n"), settings);
+    assert_eq!(report.outcome.reasons, Vec::<String>::new());
+}
+
+#[test]
 fn who_does_not_end_in_time_is_named_and_left_behind() {
     let settings = Settings { grace: Duration::from_millis(150), ..Settings::default() };
     let (fleet, diary) = start(

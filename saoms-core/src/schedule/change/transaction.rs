@@ -284,9 +284,11 @@ impl<'a> Change<'a> {
             return Err(ChangeError::Ending);
         }
         let now = engine.time_of_change(self.shared);
-        if engine.phase == RunPhase::Starting {
+        let begins = engine.phase == RunPhase::Starting;
+        if begins {
             self.shared.clock.start();
             engine.phase = RunPhase::Running;
+            engine.is_announcing = self.shared.clock.is_virtual();
             // The timer sleeps without a deadline so far. It has to sleep until the end of the run if no component is
             // due.
             engine.wake = true;
@@ -324,6 +326,12 @@ impl<'a> Change<'a> {
         (engine.speakers, engine.publishers) = (None, None);
         engine.end_if_done(now);
         self.shared.release(engine);
+        if begins {
+            // What happens first is told after the start, whichever thread is faster.
+            let mut engine = self.shared.lock();
+            (engine.is_announcing, engine.wake) = (false, true);
+            self.shared.release(engine);
+        }
         drop(outgoing);
         for (number, body) in std::mem::take(&mut self.leaving) {
             self.shut_down(number, body, now);

@@ -25,6 +25,10 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
         if engine.roles.timer != role {
             return shared.release(engine);
         }
+        if engine.is_announcing {
+            engine = sleep(shared, engine);
+            continue;
+        }
         handle_stop_request(shared, &mut engine, now);
         if engine.records.as_ref().is_some_and(|records| records.is_full()) {
             engine = wait_for_journal(shared, engine);

@@ -10,6 +10,7 @@ use crate::fault::TaskFault;
 use crate::hash::fold;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
+use crate::schedule::os::sys;
 use crate::schedule::settings::nanos;
 
 impl Engine {
@@ -255,7 +256,11 @@ impl Engine {
             self.look_at = 0;
             self.wake |= self.roles.asleep_until != 0;
         }
-        self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
+        if self.phase == RunPhase::Stopping {
+            // Each component has the time of `grace`.
+            self.ended.1 = sys::monotonic();
+            self.wake |= self.roles.asleep_until != 0;
+        }
     }
 
     #[inline]

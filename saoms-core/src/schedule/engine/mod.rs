@@ -56,6 +56,8 @@ pub(crate) struct Engine {
     pub(crate) queue: Queue,
     pub(crate) bus: Bus,
     pub(crate) phase: RunPhase,
+    /// True while the start of a run in virtual time is told: nothing happens until it has been.
+    pub(crate) is_announcing: bool,
     pub(crate) roles: Roles,
     /// Events for the observers, delivered when the lock is free.
     pub(crate) notifications: Vec<Notification>,
@@ -115,7 +117,7 @@ pub(crate) struct Engine {
     pub(crate) held_failure: Option<(u32, Failure)>,
     pub(crate) cause: Option<EndCause>,
     pub(crate) reasons: Vec<String>,
-    /// Beginning of the end, in the time of the run and on the machine's clock.
+    /// Beginning of the end in the time of the run, and the time of the machine at which code returned last since then.
     pub(crate) ended: (u64, u64),
     pub(crate) votes: VoteTally,
     pub(crate) standstill: StandstillDetector,
@@ -185,6 +187,7 @@ impl Engine {
             queue: Queue::default(),
             bus: Bus::default(),
             phase: RunPhase::Starting,
+            is_announcing: false,
             roles: Roles::default(),
             notifications: Vec::new(),
             wake: false,
