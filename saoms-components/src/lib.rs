@@ -7,7 +7,6 @@
 
 pub mod broker;
 pub mod console;
-mod curves;
 pub mod environment;
 mod failure;
 mod gone;

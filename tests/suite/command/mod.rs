@@ -1,6 +1,5 @@
 //! The command as a user meets it.
 
-mod adaptation;
 mod contributions;
 mod ending;
 mod events;

@@ -1,4 +1,6 @@
-//! Counts of the fleet in reports, and their summary.
+//! Counts of the fleet in reports, their summary, and its curves over time.
+
+mod curves;
 
 use saoms_api::extension::{Counts, RunSummary, submit};
 

@@ -25,7 +25,7 @@ fn the_page_shows_the_table_of_the_airport() {
     let (before, rest) = page.split_once("--timeline docs/airport-timeline.svg\n").unwrap();
     let (_, after) = rest.split_once("```").unwrap();
     let expected = format!("{before}--timeline docs/airport-timeline.svg\n{table}```{after}");
-    expect_file!["../../../docs/adaptation.md"].assert_eq(&expected);
+    expect_file!["../../../../docs/adaptation.md"].assert_eq(&expected);
     let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
     let kinds = report["adaptation"]["kinds"].as_array().unwrap();
     let breakdown = kinds.iter().find(|kind| kind["kind"] == "robot_breaks_down").unwrap();
@@ -39,7 +39,7 @@ fn the_page_shows_the_table_of_the_airport() {
 fn the_page_shows_the_timeline_of_the_airport() {
     let run = ["run", "composites/airport.composite", "--virtual", "--quiet", "--timeline", "-"];
     let drawn = stdout(&saoms(&run));
-    expect_file!["../../../docs/airport-timeline.svg"].assert_eq(&drawn);
+    expect_file!["../../../../docs/airport-timeline.svg"].assert_eq(&drawn);
     let document = Document::parse(&drawn).unwrap();
     let of_class = |class: &str| {
         let nodes = document.descendants().filter(|node| node.attribute("class") == Some(class));

@@ -1,5 +1,7 @@
 //! `saoms report --from-journal`: what can be known of a run that wrote no report.
 
+mod adaptation;
+
 use std::fs;
 
 use serde_json::Value;
