@@ -29,8 +29,8 @@ const IN_VAIN: u32 = 3;
 /// Number of moves beyond the reserve that the battery has to last before a charging robot makes way for others.
 const YIELD_FROM: u32 = 3;
 
-/// Percent of a battery that a robot charges before it makes way for others at a charger. Robots that share a charger
-/// would drive each other away from it before either has gained what the way costs.
+/// Percent of a battery that a robot charges before it makes way for others at a charger that is not its own alone.
+/// Robots that share one would drive each other away from it before either has gained what the way costs.
 const LEAST_GAIN: f64 = 25.0;
 
 /// Percent from which a robot makes way whose hardware measures the battery: a gauge may never show that it is full.
@@ -155,14 +155,16 @@ impl RobotKnowledge {
         Duration::from_micros(self.period)
     }
 
-    /// True if a robot at its charger has too little energy to make way for others, or gained too little there.
+    /// True if a robot at its charger has too little energy to make way for others, or gained too little at one that it
+    /// shares with them.
     pub(super) fn holds_charger(&self) -> bool {
         if !self.is_at_charger() {
             return false;
         }
         let level = self.battery.percent();
         let is_full = self.battery.is_full() || self.hardware.measures_battery() && level >= MOST_MEASURED;
-        if !is_full && self.energy.came_with.is_none_or(|before| level - before < LEAST_GAIN) {
+        let gains = !is_full && self.energy.came_with.is_none_or(|before| level - before < LEAST_GAIN);
+        if gains && self.lists.chargers.iter().any(|(_, charger)| *charger == self.charge_block) {
             return true;
         }
         let wanted = self.usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
