@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::{Chance, Class, Component, Failure, Own, Saved};
+use saoms_api::{Chance, Class, Component, Context, Failure, Own, Properties, Saved, TaskInterfaceReference, Time};
 use saoms_components::robot::Robot;
 use saoms_testkit::{Fleet, Run};
 use serde_json::{Value, json};
@@ -41,8 +41,13 @@ fn fleet(site: Site, scenario: &str, robots: &[(&str, &str)]) -> Fleet {
 
 /// The same with a master that assigns luggage in this way.
 fn fleet_with(site: Site, assignment: &str, scenario: &str, robots: &[(&str, &str)]) -> Fleet {
+    fleet_and("", site, assignment, scenario, robots)
+}
+
+/// The same with other components.
+fn fleet_and(others: &str, site: Site, assignment: &str, scenario: &str, robots: &[(&str, &str)]) -> Fleet {
     let world = if site.has_world { r#"<reference name="world" target="World"/>"# } else { "" };
-    let mut components = String::new();
+    let mut components = others.to_owned();
     if site.has_world {
         components +=
             &component("World", "World", &(property("moveTime", "150ms") + &property("handlingTime", "300ms")));
@@ -219,6 +224,48 @@ fn a_robot_breaks_while_it_hangs() {
     let expected = "Done: 3 of 3 delivered, 0 given up, 0 collisions";
     let both = |tenths: u64| format!("{} for 1700ms stall Robot2; {} breakdown 2", at(tenths), at(tenths + 4));
     expect_ends(&SITES[..2], &TEAM, (4..40).step_by(3), expected, both);
+}
+
+/// Stops another component at a time, as an operator does with `saoms stop`.
+#[derive(Class)]
+#[class(name = "test.Operator", periodic)]
+struct Operator {
+    #[properties]
+    properties: OperatorProperties,
+    #[reference]
+    task: TaskInterfaceReference,
+}
+
+#[derive(Debug, Properties)]
+struct OperatorProperties {
+    at: Duration,
+}
+
+impl Component for Operator {
+    type Properties = OperatorProperties;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if context.due() == Time::START + self.properties.at {
+            self.task.unschedule(context)?;
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn an_operator_stops_a_robot_at_any_time() {
+    for site in SITES {
+        for tenths in (3..60).step_by(3) {
+            let stop = component("Operator", "X", &property("at", &format!("{tenths}00ms")))
+                .replace("saoms.X", "test.Operator")
+                .replace("</component>", r#"<reference name="task" target="Robot2"/></component>"#);
+            let run = fleet_and(&stop, site, "robots", &format!("{THREE} at 15s end"), &TEAM).run(tenths, LIMIT);
+            let context = format!("{site:?} at {tenths}: {}", run.log());
+            assert_eq!(outcome(&run), "Done: 3 of 3 delivered, 0 given up, 0 collisions", "{context}");
+            let robot = run.components.iter().find(|one| one.name == "Robot2").unwrap();
+            assert!(robot.executions <= tenths && run.time_s < 120.0, "{context}");
+        }
+    }
 }
 
 #[test]

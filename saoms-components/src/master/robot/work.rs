@@ -13,6 +13,8 @@ use crate::state::Numbers;
 pub(super) struct Work {
     /// Numbers of all luggage so far.
     known: Numbers,
+    /// Those of luggage that was delivered or given up.
+    over: Numbers,
     /// Luggage that no robot has taken.
     waiting: BTreeMap<u32, Waiting>,
     /// The luggage that each robot brings, and the robot that brings each piece.
@@ -26,6 +28,7 @@ pub(super) struct Work {
 #[derive(Clone, Debug, Field)]
 pub(super) struct WorkMemory {
     known: Numbers,
+    over: Numbers,
     waiting: Vec<Waiting>,
     jobs: Vec<RobotJob>,
     announced: Vec<Announced>,
@@ -56,6 +59,7 @@ impl Work {
     pub(super) fn memory(&self) -> WorkMemory {
         WorkMemory {
             known: self.known.clone(),
+            over: self.over.clone(),
             waiting: self.waiting.values().copied().collect(),
             jobs: self.jobs.iter().map(|(&robot, &luggage)| RobotJob { robot, luggage }).collect(),
             announced: self.announced.clone(),
@@ -65,6 +69,7 @@ impl Work {
     pub(super) fn of(memory: WorkMemory) -> Work {
         Work {
             known: memory.known,
+            over: memory.over,
             waiting: memory.waiting.into_iter().map(|waiting| (waiting.luggage, waiting)).collect(),
             jobs: memory.jobs.iter().map(|job| (job.robot, job.luggage)).collect(),
             bearers: memory.jobs.iter().map(|job| (job.luggage, job.robot)).collect(),
@@ -94,8 +99,11 @@ impl Work {
     pub(super) fn hear_luggage(&mut self, said: &EventLuggage, now: Time, cause: Cause) {
         let luggage = said.luggage;
         match said.stage {
-            // The robot that had it left it to the others.
-            LuggageStage::Request if said.robot == 0 && self.end(luggage) => self.wait(said, now, cause),
+            // The robot that had it left it to the others, or failed.
+            LuggageStage::Request if said.robot == 0 && self.is_left(luggage) => {
+                self.end(luggage);
+                self.wait(said, now, cause);
+            }
             LuggageStage::Request => self.add(said, now, cause),
             LuggageStage::Taken => {
                 self.waiting.remove(&luggage);
@@ -104,6 +112,7 @@ impl Work {
                 self.bearers.insert(luggage, said.robot);
             }
             LuggageStage::Delivered | LuggageStage::GivenUp => {
+                self.over.insert(luggage);
                 self.waiting.remove(&luggage);
                 self.end(luggage);
             }
@@ -117,11 +126,16 @@ impl Work {
         }
     }
 
-    /// Ends the job with this luggage; false if there is none.
-    fn end(&mut self, luggage: u32) -> bool {
-        let Some(robot) = self.bearers.remove(&luggage) else { return false };
-        self.jobs.remove(&robot);
-        true
+    /// True if a robot has taken the luggage, whether or not it still has it.
+    fn is_left(&self, luggage: u32) -> bool {
+        self.known.contains(luggage) && !self.over.contains(luggage) && !self.waiting.contains_key(&luggage)
+    }
+
+    /// Ends the job with this luggage.
+    fn end(&mut self, luggage: u32) {
+        if let Some(robot) = self.bearers.remove(&luggage) {
+            self.jobs.remove(&robot);
+        }
     }
 
     fn add(&mut self, request: &EventLuggage, now: Time, cause: Cause) {
@@ -177,4 +191,39 @@ impl Work {
 
 fn count(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(robot: u32, stage: LuggageStage) -> EventLuggage {
+        EventLuggage { robot, stage, ..EventLuggage::request(7, Block::new(1, 1), Block::new(5, 5)) }
+    }
+
+    fn waiting_after(said: &[EventLuggage], failed: u32) -> u32 {
+        let mut work = Work::default();
+        for one in said {
+            if one.stage == LuggageStage::Request {
+                work.forget(failed);
+            }
+            work.hear_luggage(one, Time::START, Cause::default());
+        }
+        let kept = Work::of(work.memory());
+        assert_eq!(kept.waiting(), work.waiting(), "it goes on with the same");
+        work.waiting()
+    }
+
+    #[test]
+    fn luggage_of_a_robot_that_failed_waits_again_until_it_is_over() {
+        let [request, taken, delivered] = [LuggageStage::Request, LuggageStage::Taken, LuggageStage::Delivered];
+        let by = |robot, stage| said(robot, stage);
+        assert_eq!(waiting_after(&[by(0, request)], 2), 1);
+        assert_eq!(waiting_after(&[by(0, request), by(2, taken)], 2), 0);
+        assert_eq!(waiting_after(&[by(0, request), by(2, taken), by(0, request)], 2), 1, "its bearer failed");
+        assert_eq!(waiting_after(&[by(0, request), by(2, taken), by(0, request)], 9), 1, "its bearer left it");
+        assert_eq!(waiting_after(&[by(0, request), by(2, taken), by(3, request)], 2), 0, "for a robot that starts");
+        let late = [by(0, request), by(2, taken), by(2, delivered), by(0, request)];
+        assert_eq!(waiting_after(&late, 9), 0, "a request that is late");
+    }
 }
