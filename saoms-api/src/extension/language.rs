@@ -89,7 +89,8 @@ pub struct PropertyText<'a> {
     pub plays: &'a [String],
     /// The events that classes take.
     pub events: &'a Events,
-    /// The names of the components of a class in the composite; of replicas, the name of the first.
+    /// The names of the components of a class in the composite, or of all for an empty name; of replicas, the name of
+    /// the first.
     pub components: &'a dyn Fn(&str) -> Vec<String>,
 }
 

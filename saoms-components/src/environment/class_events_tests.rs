@@ -176,7 +176,10 @@ fn offered(text: &str) -> (String, Option<String>) {
 
 #[test]
 fn editors_offer_and_explain_them() {
-    assert_eq!(offered("at 1s |").0, "fire end 3 times");
+    assert_eq!(
+        offered("at 1s |").0,
+        "fire end 3 times for lose violate delay jitter duplicate reorder cut part fail crash drift"
+    );
     assert_eq!(offered("at 1s fire |").0, "at=(1,1) size=1 fuel=OIL heat=0.5 note=\"text\" to");
     assert_eq!(offered("at 1s fire at=( 1, 1 ) |").0, "size=1 fuel=OIL heat=0.5 note=\"text\" to");
     assert_eq!(offered("at 1s fire fuel=O|").0, "OIL WOOD");

@@ -384,6 +384,10 @@ proptest! {
                 Continuation::Place if line.ends_with("to ") => "random",
                 Continuation::Place => if ranges { "(1,0)..(10,10)" } else { "(3, 1)" },
                 Continuation::Robot => if ranges { "1..3" } else { "Robot002" },
+                Continuation::Duration => if ranges { "2 s" } else { "2000" },
+                Continuation::Rate => if ranges { "20 %" } else { "0.2" },
+                Continuation::Component => if ranges { "Robot2, hall/*" } else { "Robot2" },
+                Continuation::Topic => "POSTOPIC",
             };
             line.push_str(value);
             line.push(' ');
@@ -392,6 +396,7 @@ proptest! {
         line.push_str(match continuations(&line).first() {
             Some(Continuation::Place) => "(3, 1)",
             Some(Continuation::Robot) => "Robot002",
+            Some(Continuation::Component) => "Robot2",
             _ => "",
         });
         // `then` needs a line before it.
@@ -415,13 +420,33 @@ fn what_can_follow_is_what_the_grammar_says() {
         ("at 1s luggage (1,2)..(3,4) to random..", Continuation::Place),
         ("at 1s breakdown ", Continuation::Robot),
         ("then 1s every 2s 3 times takeoff 2..", Continuation::Pieces),
+        ("at 1s for ", Continuation::Duration),
+        ("at 1s lose ", Continuation::Rate),
+        ("at 1s reorder 20 % ", Continuation::Word("by")),
+        ("at 1s reorder 20 % by ", Continuation::Duration),
+        ("at 1s jitter 20 ms on ", Continuation::Topic),
+        ("at 1s lose 20% on POSTOPIC from A, B to ", Continuation::Component),
+        ("at 1s cut A, ", Continuation::Component),
+        ("at 1s cut A, B ", Continuation::Word("from")),
+        ("at 1s part A from B ", Continuation::Word("on")),
+        ("at 1s crash A ", Continuation::Word("restart")),
+        ("at 1s drift A ", Continuation::Rate),
     ] {
         assert_eq!(words(line), [expected], "{line}");
     }
     assert!(words("from 1s every 2s ").contains(&Continuation::Word("until")));
     assert!(!words("at 1s ").contains(&Continuation::Word("until")) && words("at 1s ").contains(&Continuation::Times));
     assert!(!words("at 1s 3 times ").contains(&Continuation::Times));
-    for line in ["at 1s end ", "nonsense ", "at 1s landing 4 ", "at 1s nonsense "] {
+    assert_eq!(words("at 1s for 2s lose 20 % "), ["on", "from", "to"].map(Continuation::Word));
+    assert_eq!(words("at 1s delay 50ms to "), [Continuation::Duration, Continuation::Component]);
+    let lasting = words("at 1s for 2 s ");
+    assert!(lasting.contains(&Continuation::Word("stall")) && !lasting.contains(&Continuation::Word("crash")));
+    let begins = words("at 1s ");
+    assert!(begins.contains(&Continuation::Word("for")) && !begins.contains(&Continuation::Word("stall")));
+    for line in [
+        "at 1s end ", "at 1s for 2s stall A ", "at 1s crash A restart 2s ", "at 1s lose 20 % to A ", "nonsense ",
+        "at 1s landing 4 ", "at 1s nonsense ",
+    ] {
         assert_eq!(words(line), [], "{line}");
     }
 }

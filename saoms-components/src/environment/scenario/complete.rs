@@ -48,7 +48,7 @@ pub(super) fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
                 let one = Completion::new(name, CompletionKind::Keyword, &word);
                 all.push(one.detail(meaning(name)).rank(rank));
             }
-            Continuation::Time if is_number(typed) => {
+            Continuation::Time | Continuation::Duration if is_number(typed) => {
                 let units = DURATION_UNITS.iter().zip(1..);
                 all.extend(units.map(|((unit, name), rank)| value(&format!("{typed}{unit}")).detail(*name).rank(rank)));
             }
@@ -63,6 +63,17 @@ pub(super) fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
                 all.push(block.detail("column and row of a block, or a range `(0,0)..(9,9)`"));
                 all.push(value("random").detail("any block of the area"));
             }
+            Continuation::Duration => all.push(value("1s").detail("a time: `500ms`, `6s`")),
+            Continuation::Rate => {
+                let number = if is_number(typed) { typed } else { "10" };
+                all.push(value(&format!("{number} %")).detail("a part, from `0 %` to `100 %`"));
+            }
+            Continuation::Component => {
+                let component = |name| Completion::new(name, CompletionKind::Component, &word);
+                all.extend(components("").into_iter().map(component));
+            }
+            // Which there are, the text alone does not say.
+            Continuation::Topic => {}
             Continuation::Robot => {
                 let robot = |name| Completion::new(name, CompletionKind::Component, &word);
                 all.extend(components(ROBOT).into_iter().map(robot));
@@ -144,6 +155,11 @@ pub(super) fn meaning(word: &str) -> &'static str {
         "fail" => "the next execution of a component fails, which its `restart` handles",
         "crash" => "a component ends without a shutdown, and starts again after `restart`, or never",
         "drift" => "the clock of a component is too fast by this part, or too slow",
+        "on" => "the only topic whose messages a fault concerns",
+        "to" => {
+            "the other end: the destination of luggage, the readers of a fault's messages, the greater time of `delay`"
+        }
+        "restart" => "the time after which a component that crashed starts again",
         "end" => "nothing happens; the run does not end before this time",
         _ => "",
     }

@@ -1,6 +1,9 @@
 //! Continuations of an unfinished line, which editors offer.
 
+use saoms_api::event::fault::{FAULTS, LASTING};
+
 use super::event::KINDS;
+use super::fault_words;
 use super::line::{STARTS, UNITS};
 use super::tokenizer::Tokenizer;
 
@@ -19,6 +22,14 @@ pub enum Continuation {
     Place,
     /// A robot.
     Robot,
+    /// How long a fault lasts, or by how much it is late: one time such as `300ms`.
+    Duration,
+    /// A part such as `20 %`.
+    Rate,
+    /// A component of any class.
+    Component,
+    /// A topic.
+    Topic,
 }
 
 /// Possible continuations of a line; none if the line is complete or wrong.
@@ -60,7 +71,9 @@ fn follow(words: &mut Tokenizer<'_>) -> Result<(), Vec<Continuation>> {
         let times = (!is_counted && !ends).then_some(Continuation::Times);
         let until = (repeats && !ends).then_some(Continuation::Word("until"));
         let every = (start == "then" && !repeats && !is_counted).then_some(Continuation::Word("every"));
-        KINDS.map(Continuation::Word).into_iter().chain(every).chain(times).chain(until).collect()
+        // `stall` needs to know how long.
+        let faults = [LASTING].into_iter().chain(FAULTS).filter(|word| *word != "stall").map(Continuation::Word);
+        KINDS.map(Continuation::Word).into_iter().chain(every).chain(times).chain(until).chain(faults).collect()
     })?;
     match kind {
         "luggage" => {
@@ -79,6 +92,10 @@ fn follow(words: &mut Tokenizer<'_>) -> Result<(), Vec<Continuation>> {
         },
         "landing" | "takeoff" => drawn(words, Continuation::Pieces)?,
         "breakdown" | "gone" => drawn(words, Continuation::Robot)?,
+        fault if fault == LASTING || FAULTS.contains(&fault) => {
+            let rest = &words.rest(fault)[fault.len()..];
+            return Err(fault_words::follow(fault, rest));
+        }
         _ => {}
     }
     Ok(())

@@ -4,6 +4,7 @@ mod bare_times;
 mod complete;
 mod continuation;
 mod event;
+mod fault_words;
 mod language;
 pub(super) mod line;
 mod meant;

@@ -100,7 +100,8 @@ fn taker<'s>(scene: &Scene, file: usize, component: &Component, name: &'s str) -
 
 fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {
     let declaration = scene.class(component).map(|class| class.declaration());
-    declaration.is_some_and(|one| one.name == class || one.extends.iter().any(|other| other == class))
+    class.is_empty()
+        || declaration.is_some_and(|one| one.name == class || one.extends.iter().any(|other| other == class))
 }
 
 /// The completions of a language at a byte of the scene's file; `range` is the text of the property.
@@ -143,7 +144,8 @@ fn shifted(completion: extension::Completion, start: usize) -> Proposal {
     }
 }
 
-/// The names of the components of a class in a composite; of replicas, the name of the first.
+/// The names of the components of a class in a composite, or of all for an empty name; of replicas, the name of the
+/// first.
 fn components(scene: &Scene, composite: usize, class: &str) -> Vec<String> {
     let components = scene.components_of(composite).filter(|(_, one)| is_a(scene, one, class));
     let first = |name: &str| render(name, &mut |_| Ok(ExpressionValue::Integer(1))).ok();

@@ -74,6 +74,15 @@ fn scenarios_complete_word_by_word() {
     assert_eq!(both("at 1s luggage random |"), ["to"]);
     assert_eq!(both("at 1s breakdown |"), ["Robot01"]);
     assert_eq!(both("at 1s gone |"), ["Robot01"]);
+    let faults = both("at 1s |");
+    assert!(["for", "lose", "crash", "drift", "slow", "drain"].iter().all(|word| faults.iter().any(|one| one == word)));
+    assert_eq!(both("at 1s for 2|")[1], "2s");
+    assert_eq!(both("at 1s for 2s lose |"), ["10 %"]);
+    assert_eq!(both("at 1s for 2s lose 20 % |"), ["on", "from", "to"]);
+    assert_eq!(both("at 1s reorder 20 % |"), ["by"]);
+    assert_eq!(both("at 1s lose 20 % from |"), ["E", "Robot01"]);
+    assert_eq!(both("at 1s crash E |"), ["restart"]);
+    assert_eq!(both("at 1s cut E from |"), ["E", "Robot01"]);
     assert_eq!(both("at 1s end # |"), [""; 0]);
     // The word at the cursor is replaced, and nothing else.
     let taken = |label: &str, marked: &str| {
