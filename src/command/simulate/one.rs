@@ -63,7 +63,7 @@ pub(super) struct Found {
 const MOST: usize = 20;
 /// Each so many seeds, from the first one on, one is run twice.
 const TWICE: u64 = 10;
-const SAME_TRACE: &str = "9 the same seed has the same trace";
+pub(super) const SAME_TRACE: &str = "9 the same seed has the same trace";
 const RUNS: &str = "the run does not fail";
 
 impl SeedResult {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::SimulateArguments;
-use super::one::{SeedResult, Simulation};
+use super::one::{SAME_TRACE, SeedResult, Simulation};
 use super::shrink::shrunk;
 use crate::arguments::FleetArguments;
 
@@ -72,7 +72,7 @@ impl Table {
         let replays = failing.take(MOST_SHOWN).map(|(place, result)| {
             let faults = (place < MOST_SHRUNK).then(|| shrunk(simulation, result)).flatten();
             let faults = faults.map(|events| events.iter().map(|event| event.line()).collect());
-            Replay { seed: result.seed, command: replay(arguments, fleet, result.seed), faults }
+            Replay { seed: result.seed, command: replay(arguments, fleet, result), faults }
         });
         let replays = replays.collect();
         Table { first: arguments.first, results, took, replays }
@@ -181,13 +181,19 @@ pub(super) fn named(fleet: &FleetArguments) -> String {
 }
 
 /// The command that shows a seed again.
-fn replay(arguments: &SimulateArguments, fleet: &FleetArguments, seed: u64) -> String {
-    let mut words = vec!["saoms".to_owned(), "run".to_owned(), named(fleet)];
+fn replay(arguments: &SimulateArguments, fleet: &FleetArguments, result: &SeedResult) -> String {
+    // A trace is compared with another one of its seed by a simulation alone.
+    let runs_twice = result.violations.first().is_some_and(|first| first.invariant == SAME_TRACE);
+    let command = if runs_twice { "simulate" } else { "run" };
+    let mut words = vec!["saoms".to_owned(), command.to_owned(), named(fleet)];
     words.extend(
         fleet.plugins.plugins.iter().flat_map(|one| ["--plugin".to_owned(), quoted(one.display().to_string())]),
     );
-    words.extend(["--virtual", "--invariants", "--seed"].map(str::to_owned));
-    words.push(seed.to_string());
+    let seed = result.seed.to_string();
+    match runs_twice {
+        true => words.extend(["--seeds", "1", "--first", &seed].map(str::to_owned)),
+        false => words.extend(["--virtual", "--invariants", "--seed", &seed].map(str::to_owned)),
+    }
     words.extend(["--for".to_owned(), saoms_api::host::format_duration(arguments.limit)]);
     if let Some(path) = &arguments.faults {
         words.extend(["--faults".to_owned(), quoted(path.display().to_string())]);

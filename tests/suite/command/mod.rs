@@ -13,6 +13,7 @@ mod options;
 mod outcomes;
 mod outputs;
 mod paths;
+mod planted;
 mod report;
 mod schema;
 mod service;

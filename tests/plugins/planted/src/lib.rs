@@ -1,0 +1,90 @@
+//! A robot that says of itself what must not be, for one invariant after the other.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use saoms_api::{Class, Component, Context, Failure, Own, Publisher};
+use saoms_components::grid::Block;
+use saoms_components::messages::{
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION, Position,
+    ROBOT_LIST, RobotList,
+};
+
+/// A robot with a bug, which shows itself with some seeds alone.
+#[derive(Class)]
+#[class(name = "test.Planted", periodic)]
+struct Planted {
+    /// What it does wrong.
+    #[property]
+    bug: String,
+    #[publishes(POSITION)]
+    positions: Publisher<Position>,
+    #[publishes(ROBOT_LIST)]
+    states: Publisher<RobotList>,
+    #[publishes(EVENT_LUGGAGE)]
+    luggage: Publisher<EventLuggage>,
+    #[publishes(CRITICAL_SITUATION)]
+    helps: Publisher<CriticalSituation>,
+    /// The execution in which it does so.
+    bad: Option<u64>,
+}
+
+const ROBOT: u32 = 99;
+/// One of so many seeds has a bad execution, which is one of the first ones.
+const SEEDS: u64 = 5;
+const EXECUTIONS: u64 = 100;
+
+fn says(stage: LuggageStage) -> EventLuggage {
+    EventLuggage { robot: ROBOT, stage, ..EventLuggage::request(50, Block::new(1, 1), Block::new(2, 2)) }
+}
+
+impl Component for Planted {
+    type Properties = Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let now = context.execution();
+        if now == 0 {
+            let (is_bad, at) = (context.chance().below(SEEDS) == 0, 2 + context.chance().below(EXECUTIONS));
+            self.bad = is_bad.then_some(at);
+            context.send(&self.luggage, EventLuggage { robot: 0, ..says(LuggageStage::Request) })?;
+        }
+        let (is_bad, bug) = (self.bad == Some(now), self.bug.as_str());
+        let battery = match bug {
+            "battery" if is_bad => 0.0,
+            "clock" => {
+                let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+                f64::from(now.subsec_nanos() % 100)
+            }
+            _ => 80.0,
+        };
+        // One that looks at the clock is none that has to do something.
+        let state = RobotList { robot: ROBOT, active: bug != "clock", battery, period: 100_000, ..RobotList::default() };
+        context.send(&self.states, state)?;
+        let block = if bug == "jump" && is_bad { Block::new(3, 1) } else { Block::new(1, 1) };
+        let at = Position { robot: ROBOT, block, next: block, wanted: block, ..Position::default() };
+        context.send(&self.positions, at)?;
+        match bug {
+            // It has delivered it before, as it says.
+            "twice" if is_bad => context.send(&self.luggage, says(LuggageStage::Delivered)),
+            "deadlock" if is_bad => context.send(&self.luggage, says(LuggageStage::Taken)),
+            "broken" if is_bad => {
+                let critical = CriticalSituation {
+                    critical: ROBOT,
+                    luggage: 50,
+                    kind: CriticalKind::CarriesLuggage,
+                    ..CriticalSituation::default()
+                };
+                context.send(&self.helps, critical)
+            }
+            // What it was asked for is done, but with a bad seed.
+            "open" if self.bad.is_some() => Ok(()),
+            "clock" | "deadlock" | "broken" => Ok(()),
+            _ if now == 1 => {
+                context.count("luggage.delivered", 1);
+                context.send(&self.luggage, says(LuggageStage::Delivered))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+saoms_api::plugin! { classes: [Planted] }
