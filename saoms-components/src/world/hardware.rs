@@ -12,7 +12,7 @@ impl World {
     fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
         let now = context.now();
         let until = now + self.referee.lasting(robot, self.properties.move_time, now);
-        match self.referee.begin_move(robot, to, until)? {
+        match self.referee.begin_move(robot, to, (now, until))? {
             Ok(collision) => {
                 if let Some(collision) = collision {
                     self.report(context, collision)?;

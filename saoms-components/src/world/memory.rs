@@ -108,7 +108,7 @@ impl BodyMemory {
             entered_again: self.entered_again,
             period: Duration::from_micros(self.period_us),
             slow: self.slow,
-            moved: Time::START,
+            moved: (Time::START, false),
         };
         (self.robot, body)
     }

@@ -46,8 +46,8 @@ pub(super) struct Body {
     pub(super) period: Duration,
     /// By what its actions take longer, and until when.
     pub(super) slow: Option<Slowness>,
-    /// When its last move was over.
-    pub(super) moved: Time,
+    /// When its last move was over, and whether it took time.
+    pub(super) moved: (Time, bool),
 }
 
 /// How slow a robot is.
@@ -146,7 +146,7 @@ impl Referee {
                 entered_again: false,
                 period: Duration::ZERO,
                 slow: None,
-                moved: Time::START,
+                moved: (Time::START, false),
             },
         );
         Ok(block)
@@ -181,8 +181,10 @@ impl Referee {
         let Some(body) = self.bodies.get(&robot) else { return usual };
         let Some(slow) = body.slow else { return usual };
         match Some(slow).filter(|slow| slow.until.is_none_or(|until| now < until)) {
-            // Not at once: in the execution in which a slow move ends it would be two blocks farther.
-            None if body.moved == now => usual.max(Duration::from_nanos(1)),
+            // Not at once: in the execution in which it hears that a slow move is over it would be two blocks farther.
+            None if body.moved.1 && now.since(body.moved.0) <= body.period.saturating_mul(2) => {
+                usual.max(Duration::from_nanos(1))
+            }
             None => usual,
             Some(slow) => {
                 let nanos = usual.max(body.period).as_nanos() as f64 * slow.factor;
@@ -248,7 +250,7 @@ impl Referee {
         &mut self,
         robot: u32,
         to: Block,
-        until: Time,
+        (now, until): (Time, Time),
     ) -> Result<Result<Option<Collision>, String>, Failure> {
         let from = self.block(robot)?;
         if from.distance(to) != 1 {
@@ -262,6 +264,7 @@ impl Referee {
         if let Some(body) = self.bodies.get_mut(&robot) {
             body.handled = None;
             body.moving = Some((to, until));
+            body.moved.1 = until > now;
             self.moving += 1;
         }
         Ok(Ok(collision))
@@ -274,7 +277,8 @@ impl Referee {
             Some((_, until)) if now < until => Progress::Running,
             Some((to, _)) => {
                 let from = std::mem::replace(&mut body.block, to);
-                (body.moving, body.moved) = (None, now);
+                body.moving = None;
+                body.moved.0 = now;
                 self.moving -= 1;
                 self.leave(robot, from);
                 Progress::Done

@@ -27,7 +27,7 @@ fn referee(starts: &[Block]) -> Referee {
 
 /// A move that is done at once.
 fn hop(referee: &mut Referee, robot: u32, to: Block) -> Option<Collision> {
-    let collision = referee.begin_move(robot, to, Time::START).unwrap().unwrap();
+    let collision = referee.begin_move(robot, to, (Time::START, Time::START)).unwrap().unwrap();
     assert_eq!(referee.progress(robot, Time::START), Progress::Done);
     collision
 }
@@ -53,7 +53,7 @@ fn a_robot_that_starts_again_is_where_it_was() {
     let mut referee = referee(&[block(0, 0)]);
     hop(&mut referee, 1, block(1, 0));
     let later = Time::START + Duration::from_secs(1);
-    referee.begin_move(1, block(2, 0), later).unwrap().unwrap();
+    referee.begin_move(1, block(2, 0), (Time::START, later)).unwrap().unwrap();
     assert_eq!(referee.enter(1, name(1), block(0, 0), Time::START), Ok(block(1, 0)));
     assert_eq!(referee.is_running(1), Ok(false));
     assert_eq!(
@@ -73,7 +73,7 @@ fn moves_lead_to_free_blocks_beside() {
         (block(3, 2), "(3,2) is not a free block of the map"),
         (block(2, 3), "(2,3) is not a free block of the map"),
     ] {
-        assert_eq!(referee.begin_move(1, to, Time::START), Ok(Err(reason.to_owned())));
+        assert_eq!(referee.begin_move(1, to, (Time::START, Time::START)), Ok(Err(reason.to_owned())));
     }
     assert_eq!(referee.block(1), Ok(block(2, 2)));
 }
@@ -101,7 +101,7 @@ fn robots_that_exchange_their_blocks_collide_by_that_alone() {
 fn a_moving_robot_holds_both_blocks_until_it_is_there() {
     let mut referee = referee(&[block(0, 0), block(0, 1), block(2, 0)]);
     let (now, later) = (Time::START, Time::START + Duration::from_secs(1));
-    assert_eq!(referee.begin_move(1, block(1, 0), later), Ok(Ok(None)));
+    assert_eq!(referee.begin_move(1, block(1, 0), (Time::START, later)), Ok(Ok(None)));
     assert_eq!(referee.progress(1, now), Progress::Running);
     assert_eq!(hop(&mut referee, 2, block(0, 0)).map(|collision| collision.block), Some(block(0, 0)));
     assert_eq!(hop(&mut referee, 3, block(1, 0)).map(|collision| collision.block), Some(block(1, 0)));
@@ -146,7 +146,7 @@ fn luggage_on_a_robot_that_is_out_of_order_is_collected_where_that_stands() {
 fn a_robot_that_is_out_of_order_stays_until_it_starts_again() {
     let mut referee = referee(&[block(0, 0)]);
     let later = Time::START + Duration::from_secs(1);
-    referee.begin_move(1, block(1, 0), later).unwrap().unwrap();
+    referee.begin_move(1, block(1, 0), (Time::START, later)).unwrap().unwrap();
     referee.retire(1).unwrap();
     referee.settle(later);
     assert!(referee.is_retired(1) && referee.is_retired_at(block(0, 0)) && !referee.is_retired_at(block(1, 0)));
