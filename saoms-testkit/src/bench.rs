@@ -1,5 +1,5 @@
-#[cfg(feature = "fleets")]
 use std::collections::BTreeMap;
+#[cfg(feature = "fleets")]
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;

@@ -255,7 +255,6 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     SaomsSink reply = {NULL, nothing};
     SaomsRegionView region = {{0, 0}, {1, 1}};
     SaomsBytes null = {NULL, 10};
-    uint64_t number;
     if (actor->executions++ != 2) {
         return SaomsStatus_OK;
     }
@@ -298,7 +297,7 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
             return functions->call(host->state, actor->callee, 0, saoms_text(""), left, error);
         }
     } else if (does(actor, "keeps null")) {
-        return functions->keep(host->state, null, &number, error);
+        return functions->keep(host->state, 1, null, error);
     } else if (does(actor, "a region without a block")) {
         return functions->set_region(host->state, actor->hears, &region, error);
     } else if (does(actor, "a region of nobody")) {
