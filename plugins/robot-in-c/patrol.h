@@ -101,6 +101,8 @@ const Block *granted(const Patrol *patrol);
 /* Releases the blocks that it has left, and those that it has not begun to enter. */
 void release_left(Patrol *patrol);
 void release_ahead(Patrol *patrol);
+/* It leaves: what was granted and is on its way is released, too. */
+void take_no_more(Patrol *patrol);
 
 /* Tells zones what it holds and where it wants to go, where that changed or was not confirmed. */
 SaomsStatus ask_zones(Patrol *patrol, const SaomsHostHandle *host, int standing, SaomsSink error);

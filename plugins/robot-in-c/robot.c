@@ -364,6 +364,7 @@ static SaomsStatus patrol_shutdown(void *component, const SaomsHostHandle *host,
     if (patrol->passage.has_zones && patrol->passage.held_count > 0) {
         release_left(patrol);
         release_ahead(patrol);
+        take_no_more(patrol);
         if ((status = ask_zones(patrol, host, LOST, error)) != SaomsStatus_OK) {
             return status;
         }

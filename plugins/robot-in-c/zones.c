@@ -82,6 +82,14 @@ void release_ahead(Patrol *patrol) {
     }
 }
 
+/* It leaves: what was granted and is on its way is released, too. */
+void take_no_more(Patrol *patrol) {
+    size_t zone;
+    for (zone = 0; zone < patrol->passage.zone_count; zone++) {
+        patrol->passage.zones[zone].received = UINT64_MAX;
+    }
+}
+
 /* What zones say. */
 
 static int contains(const Zone *zone, Block block, int64_t margin) {

@@ -137,9 +137,12 @@ impl Zone {
         let term = u64::try_from(term.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
         let territory = self.properties.territory(term, &map).map_err(|finding| Failure::from(*finding))?;
         let ledger = match kept {
-            Some(ledger) if is_same(ledger.territory(), &territory) => {
+            Some(mut ledger) if is_same(ledger.territory(), &territory) => {
                 // The robots of an earlier program have lost their memory with it: each has to say where it is first.
                 self.open = !context.kept_by_earlier_program();
+                if !self.open {
+                    ledger.begin_term(territory.term);
+                }
                 ledger
             }
             _ => {
@@ -238,7 +241,7 @@ impl Zone {
     /// world stopped them, or all where that is not known. Returns those whose record has changed.
     fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
         let mut changed = BTreeSet::new();
-        for fault in context.receive(&self.faults).filter(|fault| fault.silences()) {
+        for fault in context.receive(&self.faults).filter(|fault| fault.silences() && fault.robot != 0) {
             if fault.is_failure() {
                 // One that has begun anew since said what it holds.
                 let is_over = |spoke: &Time| fault.since.is_none_or(|since| *spoke > since);
@@ -270,6 +273,10 @@ impl Zone {
         if unheard.is_empty() {
             self.open = true;
             (self.heard, self.gone) = (BTreeSet::new(), BTreeSet::new());
+            // Also those that it knows no more, since somebody said that they are gone.
+            let kept: Vec<u64> =
+                context.kept().into_keys().filter(|key| !memory::is_current(&state.ledger, *key)).collect();
+            kept.into_iter().try_for_each(|key| context.keep(key, &[]))?;
             let members = state.ledger.members().keys().map(|robot| memory::member(&state.ledger, *robot));
             for (key, bytes) in std::iter::once(memory::territory(&state.ledger)).chain(members) {
                 context.keep(key, &bytes)?;

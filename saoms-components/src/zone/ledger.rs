@@ -125,6 +125,14 @@ impl Ledger {
         }
     }
 
+    /// Begins this term, or the next one: robots ignore grants of earlier terms, and say what they hold. Whatever they
+    /// say next counts, also if the clock, which gives their incarnations, went back meanwhile. Those that say nothing
+    /// keep their blocks.
+    pub(crate) fn begin_term(&mut self, term: u64) {
+        self.territory.term = term.max(self.territory.term.saturating_add(1));
+        self.members.values_mut().for_each(|member| member.request.incarnation = 0);
+    }
+
     pub(crate) fn member_mut(&mut self, robot: u32) -> Option<&mut Member> {
         self.members.get_mut(&robot)
     }

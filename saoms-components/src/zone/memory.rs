@@ -43,6 +43,11 @@ pub(super) fn member(ledger: &Ledger, robot: u32) -> (u64, Vec<u8>) {
     (u64::from(robot), member.map_or_else(Vec::new, |member| cdr::encode(&member)))
 }
 
+/// True if the record of a zone has something to keep under a key.
+pub(super) fn is_current(ledger: &Ledger, key: u64) -> bool {
+    key == TERRITORY || u32::try_from(key).is_ok_and(|robot| ledger.member(robot).is_some())
+}
+
 /// The record of a zone that granted; `None` if there is none.
 ///
 /// # Errors

@@ -30,7 +30,7 @@ impl DiskFile {
             let path = path.to_owned();
             move |error| StoreError::System { doing, path, error }
         };
-        fs::create_dir_all(folder).map_err(failed("be made", folder))?;
+        make(folder).map_err(failed("be made", folder))?;
         let (log, lock) = (folder.join(LOG), folder.join(LOCK));
         let is_new = !log.exists();
         if is_new && !lock.exists() {
@@ -62,6 +62,17 @@ impl DiskFile {
         }
         Ok((DiskFile { folder: folder.to_owned(), file, _lock: locked }, bytes))
     }
+}
+
+/// Makes a folder and those around it that are missing, so that they are there after a power failure.
+fn make(folder: &Path) -> io::Result<()> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    let parent = folder.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."));
+    make(parent)?;
+    fs::create_dir(folder)?;
+    sync_folder(parent)
 }
 
 /// Waits until the names of a folder's files are on the disk.

@@ -107,6 +107,8 @@ impl<F: LogFile> Log<F> {
                 return Err(CommitError::Failed(error));
             }
             self.file.cut(self.size).map_err(CommitError::Failed)?;
+            // What was reserved may be gone with it.
+            self.reserved = self.reserved.map(|_| 0);
             return Err(CommitError::Full(error));
         }
         self.file.sync().map_err(CommitError::Failed)?;

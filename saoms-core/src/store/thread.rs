@@ -78,6 +78,11 @@ impl StoreQueue {
         })
     }
 
+    /// Nothing is committed from now on.
+    pub(crate) fn fail(&self, text: &str, events: &impl StoreEvents) {
+        events.failed(self.failure.get_or_init(|| text.to_owned()));
+    }
+
     /// Lets the thread end once all is written.
     pub(crate) fn close(&self) {
         self.lock().is_closed = true;
@@ -152,8 +157,7 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
             }
         };
         let text = format!("the state folder cannot be written: {error}; what is kept from now on would be lost");
-        let text = self.queue.failure.get_or_init(|| text);
-        self.events.failed(text);
+        self.queue.fail(&text, self.events);
         Err(())
     }
 

@@ -29,13 +29,6 @@ const IN_VAIN: u32 = 3;
 /// Number of moves beyond the reserve that the battery has to last before a charging robot makes way for others.
 const YIELD_FROM: u32 = 3;
 
-/// Percent of a battery that a robot charges before it makes way for others at a charger that is not its own alone.
-/// Robots that share one would drive each other away from it before either has gained what the way costs.
-const LEAST_GAIN: f64 = 25.0;
-
-/// Percent from which a robot makes way whose hardware measures the battery: a gauge may never show that it is full.
-const MOST_MEASURED: f64 = 90.0;
-
 /// State of a robot's energy management.
 #[derive(Debug, Default, Clone, Field)]
 pub(crate) struct Energy {
@@ -50,8 +43,6 @@ pub(crate) struct Energy {
     set_out_for: Option<u32>,
     /// True if the robot was free when this execution began.
     was_free: bool,
-    /// Battery level in percent with which it came to its charger, while it is there.
-    came_with: Option<f64>,
 }
 
 /// Result of comparing the battery with a job.
@@ -106,9 +97,6 @@ impl RobotKnowledge {
         if self.is_at_charger() {
             // What a loop asked for is done.
             self.said_homeward = self.variables.ready_to_go_under_charge;
-            self.energy.came_with.get_or_insert(self.battery.percent());
-        } else {
-            self.energy.came_with = None;
         }
         self.asked_to_charge = self.is_asked_home();
         self.lasts = self.executions_left();
@@ -155,17 +143,10 @@ impl RobotKnowledge {
         Duration::from_micros(self.period)
     }
 
-    /// True if a robot at its charger has too little energy to make way for others, or gained too little at one that it
-    /// shares with them.
+    /// True if a robot at its charger has too little energy to make way for others.
     pub(super) fn holds_charger(&self) -> bool {
         if !self.is_at_charger() {
             return false;
-        }
-        let level = self.battery.percent();
-        let is_full = self.battery.is_full() || self.hardware.measures_battery() && level >= MOST_MEASURED;
-        let gains = !is_full && self.energy.came_with.is_none_or(|before| level - before < LEAST_GAIN);
-        if gains && self.lists.chargers.iter().any(|(_, charger)| *charger == self.charge_block) {
-            return true;
         }
         let wanted = self.usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
         self.executions_left() < wanted.min(self.executions_when_full())

@@ -9,8 +9,9 @@ use crate::robot::RobotKnowledge;
 
 /// Number of executions at the charger after which a battery that is no fuller gains nothing.
 const PATIENCE: u32 = 5;
-/// The least time of that where the hardware measures the battery, perhaps in whole percents.
-const MEASURED_PATIENCE: Duration = Duration::from_secs(60);
+/// The least time of that where the hardware measures the battery, perhaps in whole percents: one takes 72 s where a
+/// battery takes two hours.
+const MEASURED_PATIENCE: Duration = Duration::from_secs(600);
 /// Number of executions from one look for another charger to the next.
 const LOOK_AGAIN: u32 = 20;
 /// For how long a charger that gave nothing is not tried again, unless the robot stays there.

@@ -47,7 +47,11 @@ impl Engine {
     ) {
         let mut names = Vec::new();
         for (spec, &number) in specs.zip(numbers) {
-            let stored = self.stored_of(&spec.path);
+            // One that takes the place of a component of another class does not go on from what that kept.
+            let stored = match self.numbers.get(spec.path.as_str()) {
+                Some(known) if self.slots[*known as usize].is_member() => Stored::default(),
+                _ => self.stored_of(&spec.path),
+            };
             if let Some(slot) = self.slots.get_mut(number as usize) {
                 slot.revive(spec, stored);
                 continue;
@@ -235,6 +239,8 @@ impl Slot {
             (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);
             body.part.lasting.forget();
             body.part.stored = stored;
+            body.part.to_keep.clear();
+            body.part.outbox.clear();
         }
     }
 }

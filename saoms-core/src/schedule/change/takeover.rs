@@ -212,6 +212,7 @@ impl Body {
             bus.unsubscribe(subscription);
         }
         part.outbox.clear();
+        part.to_keep.clear();
         part.vote = None;
         part.held = false;
         let Endpoints { spec, publishers, subscriptions, recorder } = predecessor.endpoints;

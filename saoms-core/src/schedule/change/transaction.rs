@@ -302,6 +302,15 @@ impl<'a> Change<'a> {
         for &number in &self.begun {
             engine.take_vote(number, now);
         }
+        // Before others may keep something under the same names.
+        for &number in removed {
+            engine.forget_stored(number, now);
+        }
+        for (number, body) in &mut self.leaving {
+            if removed.contains(number) {
+                engine.forget_stored_of(&mut body.part, now);
+            }
+        }
         for &number in &self.added {
             engine.join(number, now);
         }
@@ -319,7 +328,6 @@ impl<'a> Change<'a> {
                 engine.leave_topics(number, now);
                 engine.forget_vote(number, now);
                 engine.forget(number);
-                engine.forget_stored(number, now);
             }
         }
         engine.takers = (None, engine.takers.1 + 1);
@@ -349,9 +357,10 @@ impl<'a> Change<'a> {
         (body.part.now, body.part.due) = (now, now);
         let result = body.perform(self.shared, Job::Shutdown);
         let mut engine = self.shared.lock();
+        // What it keeps now would outlive it.
+        body.part.to_keep.clear();
         engine.finish(number, body, Job::Shutdown, result, now, now);
         engine.forget(number);
-        engine.forget_stored(number, now);
         self.shared.release(engine);
     }
 }

@@ -320,8 +320,10 @@ impl Host for ComponentHost<'_> {
             return Err(Failure::new(refusal));
         }
         let part = &mut *self.part;
-        let waiting = part.to_keep.iter().filter_map(|(_, bytes)| bytes.as_ref());
-        let size = waiting.map(|bytes| bytes.len()).sum::<usize>() + part.stored.size() + bytes.len();
+        let others = part.to_keep.iter().filter(|(other, _)| *other != key);
+        let waiting: usize = others.filter_map(|(_, bytes)| bytes.as_ref()).map(|bytes| bytes.len()).sum();
+        let before = part.stored.entries().get(&key).map_or(0, |bytes| bytes.len());
+        let size = waiting + part.stored.size() - before + bytes.len();
         if size > saoms_abi::MAX_BYTES {
             let most = saoms_abi::MAX_BYTES >> 20;
             return Err(Failure::new(format!("{size} bytes are more than a component can keep: {most} MiB")));

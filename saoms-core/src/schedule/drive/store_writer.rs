@@ -1,6 +1,7 @@
 //! The thread that puts on the disk what components keep.
 
 use std::io;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, PoisonError};
 
 use saoms_api::Level;
@@ -31,7 +32,7 @@ impl StoreEvents for ToFleet {
 
     fn failed(&self, text: &str) {
         let mut engine = self.0.lock();
-        engine.store_failed(text);
+        engine.store_failed(text, self.0.clock.now());
         self.0.release(engine);
         self.0.alert(ALERT.0, ALERT.1, Some(text.to_owned()));
     }
@@ -48,7 +49,12 @@ pub(crate) fn use_store(shared: &Arc<Shared>, store: Store) -> io::Result<()> {
         shared.note(Level::Warning, repaired.to_owned());
     }
     let (for_thread, events) = (Arc::clone(&queue), ToFleet(Arc::clone(shared)));
-    let thread = start_thread("saoms-store", move || write(store, &for_thread, &events))?;
+    let thread = start_thread("saoms-store", move || {
+        if panic::catch_unwind(AssertUnwindSafe(|| write(store, &for_thread, &events))).is_err() {
+            // A fault of the store itself: whoever waits for it must not wait for ever.
+            for_thread.fail("the thread that writes the state folder panicked", &events);
+        }
+    })?;
     *shared.store_thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
     shared.lock().use_store(found, Arc::clone(&queue));
     // A fleet has one store: it is set once, before the components initialize.

@@ -1,11 +1,12 @@
 //! What components keep: it is committed, and only then the messages leave that may depend on it.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicKind};
 
 use super::{Engine, RunPhase};
-use crate::bus::TopicId;
+use crate::bus::{Bus, TopicId};
 use crate::schedule::component::body::Part;
 use crate::schedule::component::stored::{Stored, StoredChange};
 use crate::store::{Batch, Change, Contents, StoreQueue};
@@ -29,6 +30,8 @@ pub(crate) struct Uncommitted {
     before: Vec<StoredChange>,
     /// Messages of that execution, and of later ones that kept nothing.
     messages: Vec<(TopicId, SharedMessage)>,
+    /// Number of messages beyond which those of state topics are removed that newer ones replace.
+    most: usize,
     /// True if the run does not end before the messages are read.
     settles: bool,
 }
@@ -46,11 +49,27 @@ pub(crate) enum LastCommits {
     Over,
 }
 
+/// Number of messages that wait without a look at which of them are outdated.
+const MANY: usize = 1024;
+
+/// Removes messages of state topics that newer ones replace: a full disk may stay full for long.
+fn thin_out(messages: &mut Vec<(TopicId, SharedMessage)>, bus: &Bus) {
+    let mut newer = HashSet::new();
+    let mut kept: Vec<(TopicId, SharedMessage)> = Vec::new();
+    for (topic, message) in messages.drain(..).rev() {
+        if bus.kind(topic) == TopicKind::Event || newer.insert((topic.number(), message.key())) {
+            kept.push((topic, message));
+        }
+    }
+    kept.reverse();
+    *messages = kept;
+}
+
 impl Engine {
     /// Keeps what an execution has kept.
     #[cold]
     pub(super) fn keep(&mut self, part: &mut Part, now: u64) {
-        let Part { to_keep, stored, index, name, outbox, .. } = part;
+        let Part { to_keep, stored, index, name, .. } = part;
         let change =
             |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
         let changes: Vec<Change> = to_keep.iter().map(change).collect();
@@ -63,23 +82,35 @@ impl Engine {
             Commits::After(delay) => self.injections.commit_at(now.saturating_add(*delay), *index, number),
             Commits::InStore(queue) if queue.has_failed() => {
                 // It happened since this execution began. The next one hears of it.
-                self.unsent += outbox.len() as u64;
-                return outbox.clear();
+                self.slots[*index as usize].is_cut_off = true;
+                return;
             }
             Commits::InStore(queue) => queue.put(Batch { index: *index, number, changes }),
         }
         self.look_at = self.injections.earliest().map_or(self.look_at, |when| when.min(self.look_at));
-        let uncommitted = Uncommitted { number, before, messages: Vec::new(), settles: false };
+        let uncommitted = Uncommitted { number, before, messages: Vec::new(), most: MANY, settles: false };
         self.slots[*index as usize].uncommitted.push_back(uncommitted);
         self.uncommitted += 1;
     }
 
-    /// Lets the messages of an execution wait until what was kept before is committed.
+    /// Lets the messages of an execution wait until what was kept before is committed. Those of a component that has
+    /// lost what it kept are never sent.
     #[cold]
     pub(super) fn hold_back(&mut self, part: &mut Part, settles: bool) {
-        if let Some(last) = self.slots[part.index as usize].uncommitted.back_mut() {
-            last.settles |= settles;
-            last.messages.append(&mut part.outbox);
+        let slot = &mut self.slots[part.index as usize];
+        match slot.uncommitted.back_mut() {
+            Some(last) if !slot.is_cut_off => {
+                last.settles |= settles;
+                last.messages.append(&mut part.outbox);
+                if last.messages.len() > last.most {
+                    thin_out(&mut last.messages, &self.bus);
+                    last.most = MANY.max(2 * last.messages.len());
+                }
+            }
+            _ => {
+                self.unsent += part.outbox.len() as u64;
+                part.outbox.clear();
+            }
         }
     }
 
@@ -132,23 +163,31 @@ impl Engine {
     }
 
     /// Nothing will be committed any more: what waited for it is lost.
-    pub(crate) fn store_failed(&mut self, text: &str) {
+    pub(crate) fn store_failed(&mut self, text: &str, now: u64) {
         for slot in &mut self.slots {
+            slot.is_cut_off |= !slot.uncommitted.is_empty();
             self.unsent += slot.uncommitted.drain(..).map(|one| one.messages.len() as u64).sum::<u64>();
         }
         (self.uncommitted, self.last_commits) = (0, LastCommits::Over);
         self.reasons.push(text.to_owned());
+        self.end_if_done(now);
     }
 
     /// Removes what a component keeps that leaves the fleet.
     pub(crate) fn forget_stored(&mut self, index: u32, now: u64) {
-        let Some(mut body) = self.slots[index as usize].body.take() else { return };
-        self.found.forget(&body.part.name);
-        body.part.to_keep = body.part.stored.entries().keys().map(|key| (*key, None)).collect();
-        if !body.part.to_keep.is_empty() {
-            self.keep(&mut body.part, now);
+        if let Some(mut body) = self.slots[index as usize].body.take() {
+            self.forget_stored_of(&mut body.part, now);
+            self.slots[index as usize].body = Some(body);
         }
-        self.slots[index as usize].body = Some(body);
+    }
+
+    /// The same, of one whose body is out.
+    pub(crate) fn forget_stored_of(&mut self, part: &mut Part, now: u64) {
+        self.found.forget(&part.name);
+        part.to_keep = part.stored.entries().keys().map(|key| (*key, None)).collect();
+        if !part.to_keep.is_empty() {
+            self.keep(part, now);
+        }
     }
 
     /// What a component keeps that joins the fleet.

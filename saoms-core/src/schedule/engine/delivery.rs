@@ -44,7 +44,8 @@ impl Engine {
         }
         part.sent_bytes = 0;
         let settles = std::mem::take(&mut part.has_raised) || self.says_last_words(part);
-        if self.slots[part.index as usize].uncommitted.is_empty() {
+        let slot = &self.slots[part.index as usize];
+        if slot.uncommitted.is_empty() && !slot.is_cut_off {
             self.send_all(part.index, &part.name, part.outbox.drain(..), settles, now);
         } else {
             self.hold_back(part, settles);

@@ -183,6 +183,10 @@ impl Engine {
             return;
         }
         self.note_return();
+        if self.phase == RunPhase::Stopping {
+            // Each component has the time of `grace`. Calls that it makes give it no more.
+            self.ended.1 = sys::monotonic();
+        }
         if job == Job::Describe {
             self.note_answer(index);
         }
@@ -256,11 +260,7 @@ impl Engine {
             self.look_at = 0;
             self.wake |= self.roles.asleep_until != 0;
         }
-        if self.phase == RunPhase::Stopping {
-            // Each component has the time of `grace`.
-            self.ended.1 = sys::monotonic();
-            self.wake |= self.roles.asleep_until != 0;
-        }
+        self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
     }
 
     #[inline]

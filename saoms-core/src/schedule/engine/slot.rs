@@ -77,6 +77,8 @@ pub(crate) struct Slot {
     pub(crate) statistics: Statistics,
     /// Executions that kept something which is not committed.
     pub(crate) uncommitted: VecDeque<Uncommitted>,
+    /// True if it has lost what it kept, since the disk failed: its messages may depend on that, and are not sent.
+    pub(crate) is_cut_off: bool,
     pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
     pub(crate) overrun_failure: Option<String>,
@@ -276,6 +278,7 @@ impl Slot {
             described: None,
             statistics: Statistics::default(),
             uncommitted: VecDeque::new(),
+            is_cut_off: false,
             journal: Ring::default(),
             overrun_failure: None,
             name,
