@@ -49,6 +49,10 @@ impl DiskFile {
         }
         let mut file =
             OpenOptions::new().create(true).read(true).append(true).open(&log).map_err(failed("be written", &log))?;
+        // The other file may have been removed as a leftover.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(StoreError::Used { folder: folder.to_owned() });
+        }
         let bytes = fs::read(&log).map_err(failed("be read", &log))?;
         // A program that ended before it had written the first line had committed nothing.
         if bytes.len() < group::HEAD.len() && group::HEAD.starts_with(&bytes) {
@@ -108,7 +112,10 @@ impl LogFile for DiskFile {
             let mut file = OpenOptions::new().create(true).truncate(true).write(true).open(&new)?;
             file.write_all(bytes)?;
             file.sync_all()?;
-            OpenOptions::new().append(true).open(&new)
+            let file = OpenOptions::new().append(true).open(&new)?;
+            // Nobody else uses it yet; a file system without locks has none for the other file, either.
+            let _ = file.try_lock();
+            Ok(file)
         };
         let file = write().map_err(|error| {
             // It takes space that the log may need.

@@ -100,8 +100,8 @@ impl Store {
         }
         let repaired = (torn > 0).then(|| {
             format!(
-                "the last {torn} bytes of `{}` were written while the machine or the program stopped, and are removed: \
-                 nothing that was committed is lost",
+                "the last {torn} bytes of `{}` are no whole group, as after a failure of the power, and are removed: they \
+                 were never committed, unless somebody changed the file",
                 path.display()
             )
         });

@@ -104,8 +104,9 @@ impl StoreEvents for Told {
         self.0.lock().unwrap().push(format!("committed {batches:?}"));
     }
 
-    fn is_full(&self, text: Option<String>) {
-        self.0.lock().unwrap().push(text.map_or("has space".to_owned(), |_| "is full".to_owned()));
+    fn is_full(&self, text: Option<&str>) {
+        let text = text.map_or("has space", |text| if text.contains("almost") { "is almost full" } else { "is full" });
+        self.0.lock().unwrap().push(text.to_owned());
     }
 
     fn complain(&self, text: String) {
@@ -151,6 +152,8 @@ fn a_folder_that_is_no_store_is_refused() {
 
     let used = Store::open(&path("used")).unwrap();
     let told = "another program keeps its state in `FOLDER`: end it, or name another folder";
+    assert_eq!(refused(&path("used")), told);
+    fs::remove_file(path("used/lock")).unwrap();
     assert_eq!(refused(&path("used")), told);
     drop(used);
     Store::open(&path("used")).unwrap();
@@ -234,7 +237,7 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
             queue.put(Batch { index: 0, number, changes: changes(kept) });
         }
         queue.close();
-        Writer { log: file.clone().log(), queue: &queue, events: &told, is_full: false }.write();
+        Writer { log: file.clone().log(), queue: &queue, events: &told, told: None }.write();
         let bytes = file.0.lock().unwrap().bytes.clone();
         (told.0.into_inner().unwrap().join("; "), shown(&read(&bytes).contents), queue.refusal())
     };
@@ -248,9 +251,9 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
     }
     // The reserve is less than wanted, but there is space for these.
     let (told, shown, _) = run(TestDisk { space: Some(1000), ..TestDisk::default() }, &kept);
-    assert_eq!((told.as_str(), shown.as_str()), ("is full; committed [(0, 1), (0, 2), (0, 3)]", all));
+    assert_eq!((told.as_str(), shown.as_str()), ("is almost full; committed [(0, 1), (0, 2), (0, 3)]", all));
     let (told, shown, _) = run(TestDisk { space: Some(50), ..TestDisk::default() }, &kept);
-    let full = "is full; the state folder cannot be written: no storage space; what is kept from now on would be lost";
+    let full = "is almost full; is full; the state folder cannot be written: no storage space; what is kept from now on would be lost";
     assert_eq!((told.as_str(), shown.as_str()), (full, ""));
 }
 
@@ -260,18 +263,18 @@ fn a_full_disk_is_tried_again_until_it_has_space() {
     let (queue, told) = (StoreQueue::default(), Told::default());
     queue.put(Batch { index: 3, number: 1, changes: changes("A 1 one") });
     std::thread::scope(|scope| {
-        scope.spawn(|| Writer { log: file.clone().log(), queue: &queue, events: &told, is_full: false }.write());
-        while told.0.lock().unwrap().is_empty() {
+        scope.spawn(|| Writer { log: file.clone().log(), queue: &queue, events: &told, told: None }.write());
+        while told.0.lock().unwrap().len() < 2 {
             std::thread::yield_now();
         }
         file.0.lock().unwrap().space = None;
-        while told.0.lock().unwrap().len() < 3 {
+        while told.0.lock().unwrap().len() < 4 {
             std::thread::yield_now();
         }
         queue.close();
     });
     let told = told.0.into_inner().unwrap();
-    assert_eq!(told, ["is full", "committed [(3, 1)]", "has space"]);
+    assert_eq!(told, ["is almost full", "is full", "committed [(3, 1)]", "has space"]);
     assert_eq!(shown(&read(&file.0.lock().unwrap().bytes).contents), "A 1 one");
 }
 

@@ -20,8 +20,9 @@ pub(crate) struct Batch {
 pub(crate) trait StoreEvents {
     /// These batches are on the disk: the component and the number of each.
     fn committed(&self, batches: &[(u32, u64)]);
-    /// The disk has no space left: nothing is committed, or as much as was reserved. `None` once it has.
-    fn is_full(&self, text: Option<String>);
+    /// The disk has no space left: nothing is committed, or as much as was reserved, as the text says. `None` once it
+    /// has space again.
+    fn is_full(&self, text: Option<&str>);
     /// Something hinders nothing yet.
     fn complain(&self, text: String);
     /// Nothing will be committed any more.
@@ -46,6 +47,8 @@ struct Waiting {
 
 /// Most bytes that may wait. The disk is full or too slow beyond them.
 const MOST_WAITING: usize = 64 << 20;
+const ALMOST_FULL: &str = "the disk of the state folder is almost full: make space, before components that keep something have to wait for it";
+const FULL: &str = "the disk of the state folder is full: make space; components that keep something wait for it";
 /// Pause before a full disk is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
@@ -97,15 +100,15 @@ fn size(batch: &Batch) -> usize {
 
 /// Writes what comes through the queue, until that is closed. All that came while the disk was busy is one group.
 pub(crate) fn write(store: Store, queue: &StoreQueue, events: &impl StoreEvents) {
-    Writer { log: store.log, queue, events, is_full: false }.write();
+    Writer { log: store.log, queue, events, told: None }.write();
 }
 
 pub(super) struct Writer<'a, F, E> {
     pub(super) log: Log<F>,
     pub(super) queue: &'a StoreQueue,
     pub(super) events: &'a E,
-    /// True if it was told that the disk is full.
-    pub(super) is_full: bool,
+    /// What was told of a disk without space.
+    pub(super) told: Option<&'static str>,
 }
 
 impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
@@ -147,7 +150,7 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
                 }
                 Err(CommitError::Failed(error)) => break error,
                 Err(CommitError::Full(error)) => {
-                    self.tell_full(true);
+                    self.tell(Some(FULL));
                     let waiting = self.queue.lock();
                     if waiting.is_closed {
                         break error;
@@ -163,13 +166,12 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
 
     fn look_for_space(&mut self) {
         let has_space = self.log.reserve();
-        self.tell_full(!has_space);
+        self.tell((!has_space).then_some(ALMOST_FULL));
     }
 
-    fn tell_full(&mut self, is_full: bool) {
-        if mem::replace(&mut self.is_full, is_full) != is_full {
-            let text = "the disk of the state folder is full: make space; components that keep something wait for it";
-            self.events.is_full(is_full.then(|| text.to_owned()));
+    fn tell(&mut self, text: Option<&'static str>) {
+        if mem::replace(&mut self.told, text) != text {
+            self.events.is_full(text);
         }
     }
 }

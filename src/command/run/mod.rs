@@ -264,6 +264,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::WrongInput;
     }
     let style = LogStyle::of(&arguments.log, &assembly);
+    let read = read.into_iter().chain(state::files(arguments)).collect();
     let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
     let RunFiles { report, picture, timeline, journal, log } = files_written;
     let alerts: Arc<AlertList> = Arc::default();

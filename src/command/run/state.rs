@@ -1,3 +1,6 @@
+use std::fs;
+use std::path::PathBuf;
+
 use saoms_core::store::Store;
 
 use super::RunArguments;
@@ -20,4 +23,10 @@ pub(super) fn open(arguments: &RunArguments) -> Result<Option<Store>, Exit> {
         Ok(store) => Ok(Some(store)),
         Err(error) => refuse(&format!("the state of `--state` cannot be used: {error}")),
     }
+}
+
+/// The files in the folder, which no output may replace.
+pub(super) fn files(arguments: &RunArguments) -> impl Iterator<Item = PathBuf> + use<'_> {
+    let entries = arguments.state.iter().flat_map(fs::read_dir).flatten();
+    entries.filter_map(|entry| Some(entry.ok()?.path()))
 }

@@ -78,6 +78,7 @@ fn a_state_that_cannot_be_used_is_refused_before_the_start() {
         refused(&["--state", "state", "--virtual"]),
         refused(&["--state", "other"]),
         refused(&["--state", "other/notes.txt"]),
+        refused(&["--state", "state", "--log", "state/store.log"]),
     ];
     saoms_in(&folder, &["run", "f.composite", "--state", "state", "--for", "200ms"]);
     let log = folder.join("state/store.log");
@@ -95,6 +96,7 @@ fn a_state_that_cannot_be_used_is_refused_before_the_start() {
         error: `--state` keeps what a fleet does in real time, and `--virtual` begins anew each time: leave one of them out
         error: the state of `--state` cannot be used: the folder `other` has files, but no state of a fleet: name an empty folder, or one that does not exist
         error: the state of `--state` cannot be used: `other/notes.txt` cannot be made: File exists (os error 17)
+        error: the log cannot be written to `state/store.log`, which is an input
         error: the state of `--state` cannot be used: `state/store.log` is damaged: what stands at byte N is not what was written there, and more follows it; restore the folder from a backup, or name another one: the fleet begins without its state then
         error: the state of `--state` cannot be used: `state/store.log` is of another version (`saoms-store 7`): run the version of SAOMS that wrote it, or name another folder"#]]
     .assert_eq(&told.join("\n"));

@@ -22,8 +22,8 @@ impl StoreEvents for ToFleet {
         add_commits(&self.0, batches);
     }
 
-    fn is_full(&self, text: Option<String>) {
-        self.0.alert(ALERT.0, ALERT.1, text);
+    fn is_full(&self, text: Option<&str>) {
+        self.0.alert(ALERT.0, ALERT.1, text.map(str::to_owned));
     }
 
     fn complain(&self, text: String) {
