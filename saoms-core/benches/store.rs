@@ -2,8 +2,8 @@
 //!
 //! First, in virtual time on one core, ns per execution of a component that sends a message and keeps nothing, keeps
 //! 150 bytes in memory, or keeps them and lets the message wait for a commit: the best of seven. Then, in real time,
-//! fleets that keep 150 bytes in each execution in a folder in `target`: how many executions were committed in a second,
-//! and how long their messages waited for the disk, from the execution to the reaction of their reader.
+//! fleets that keep 150 bytes in each execution in a folder in `target`: how many executions were committed in a
+//! second, and how long their messages waited for the disk, from the execution to the reaction of their reader.
 
 use std::path::Path;
 use std::sync::Mutex;
