@@ -368,10 +368,7 @@ impl Host for Stage {
     }
 
     fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
-        match bytes {
-            [] => drop(self.kept.remove(&key)),
-            _ => drop(self.kept.insert(key, bytes.to_vec())),
-        }
+        drop(if bytes.is_empty() { self.kept.remove(&key) } else { self.kept.insert(key, bytes.to_vec()) });
         Ok(())
     }
 
