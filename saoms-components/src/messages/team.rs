@@ -77,7 +77,12 @@ pub struct RobotList {
 impl RobotList {
     /// True if the robot is asleep, and charged enough to work when it is woken.
     pub fn can_be_woken(&self) -> bool {
-        self.active && self.asleep && self.battery > LOW
+        self.asleep && self.can_work()
+    }
+
+    /// True if the robot is charged enough to work.
+    pub fn can_work(&self) -> bool {
+        self.active && self.battery > LOW
     }
 
     /// True if the battery is empty and the robot is not at a charger.

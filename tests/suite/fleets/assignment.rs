@@ -10,6 +10,11 @@ const HOUR: Duration = Duration::from_secs(3600);
 /// A fleet on an open map of so many columns and rows, with these properties of the master of the environment and these
 /// robots, as their chargers and further properties.
 fn fleet(side: u32, master: &str, scenario: &str, robots: &[(u32, u32, &str)]) -> Fleet {
+    fleet_with(side, "moveTime=200ms", [master, ""], scenario, robots)
+}
+
+/// The same with these properties of the world and of both masters, of the environment and of the robots.
+fn fleet_with(side: u32, world: &str, [master, crew]: [&str; 2], scenario: &str, robots: &[(u32, u32, &str)]) -> Fleet {
     let mut text = String::from(
         "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">",
     );
@@ -21,9 +26,9 @@ fn fleet(side: u32, master: &str, scenario: &str, robots: &[(u32, u32, &str)]) -
         }
         text += &format!("{rest}</component>\n");
     };
-    add("saoms.World", "World", &format!("width={side} height={side} moveTime=200ms"), "");
+    add("saoms.World", "World", &format!("width={side} height={side} {world}"), "");
     add("saoms.MasterEnvironment", "Master", master, "");
-    add("saoms.MasterRobot", "Crew", "", "");
+    add("saoms.MasterRobot", "Crew", crew, "");
     add("saoms.Environment", "Environment", "", &format!("<property name=\"scenario\">{scenario}</property>"));
     for (place, (x, y, properties)) in robots.iter().enumerate() {
         let properties = format!("chargeX={x} chargeY={y} dischargePerBlock=0.1 chargePerSecond=5 {properties}");
@@ -173,4 +178,44 @@ fn robots_sleep_again_when_what_was_announced_does_not_come() {
     let robots = [(0, 0, ""), (5, 5, "asleep=true"), (10, 0, "asleep=true")];
     let log = delivers(&fleet(12, "", scenario, &robots), 1, 1).log();
     assert_eq!((log.matches(": wakes up").count(), log.matches(": sleeps").count()), (2, 2), "{log}");
+}
+
+/// Two airplanes land so many seconds apart, with eight pieces each, one every five seconds; all but one robot sleep,
+/// or none.
+fn two_landings(apart: u32, asleep: bool, seed: u64) -> f64 {
+    let landing = |at: u32| {
+        let pieces = (0..8).map(|piece| {
+            let at = at + 1 + 5 * piece;
+            format!("at {at}s luggage (13,0)..(19,19) to (1,0)..(5,19); ")
+        });
+        format!("at {at}s landing 8; {}", pieces.collect::<String>())
+    };
+    let scenario = landing(1) + &landing(1 + apart);
+    // Those who are awake stay so.
+    let counter = if asleep { "counter=50" } else { "counter=100000" };
+    let of = |place: u32| (0, 4 * place, if asleep && place > 0 { "asleep=true" } else { "" });
+    let robots: Vec<(u32, u32, &str)> = (0..5).map(of).collect();
+    let fleet = fleet_with(20, "moveTime=1s", ["", counter], &scenario, &robots);
+    delivers(&fleet, seed, 16).time_s
+}
+
+#[test]
+fn robots_that_sleep_cost_two_landings_little_time() {
+    for apart in [10, 60] {
+        let total = |asleep: bool| (1..=4).map(|seed| two_landings(apart, asleep, seed)).sum::<f64>();
+        let (asleep, awake) = (total(true), total(false));
+        assert!(asleep <= 1.15 * awake, "{apart} s apart: {asleep} s in place of {awake} s");
+    }
+}
+
+#[test]
+fn a_robot_on_its_way_to_sleep_is_called_back_for_luggage_that_waits() {
+    // Both are sent to sleep at 6 s, when robot 1 has its job. The other pieces wait for longer than the counter.
+    let scenario = "at 1s landing 2; at 2s luggage (19,0) to (1,19); at 7s luggage (19,19) to (1,5); \
+        at 7s luggage (18,19) to (2,5)";
+    let robots = [(0, 0, "asleep=true"), (0, 19, "asleep=true")];
+    let fleet = fleet_with(20, "moveTime=1s", ["", "counter=50 piecesPerRobot=1"], scenario, &robots);
+    let log = delivers(&fleet, 1, 3).log_of("Robot1").join("\n");
+    let job = log.split_once("takes luggage 1 ").unwrap().1.split_once("deposited luggage 1 ").unwrap().0;
+    assert!(job.contains("wakes up"), "{log}");
 }

@@ -174,13 +174,15 @@ impl MasterRobotKnowledge {
         self.classic > 0
     }
 
-    /// The robot to wake next: the one with the highest battery level, less 1 % for each block to the closest luggage
-    /// that waits; then the one with the lowest number.
+    /// The robot to wake next, or to call back on its way to sleep: the one with the highest battery level, less 1 %
+    /// for each block to the closest luggage that waits; then the one with the lowest number. One that still has a job
+    /// comes last.
     pub fn next_to_awake(&self) -> Option<u32> {
         let far = if self.counts_alone() { |_: &Work, _: &RobotList| 0.0 } else { way_to_work };
         let right = |one: &RobotList| RobotList { battery: one.battery - far(&self.work, one), ..one.clone() };
-        let sleepers = self.callable(RobotList::can_be_woken).map(right);
-        sleepers.max_by(by_right).map(|one| one.robot)
+        let all = self.callable(RobotList::can_be_woken).chain(self.on_the_way_to_sleep()).map(right);
+        let has_job = |robot: &RobotList| self.work.has_job(robot.robot);
+        all.max_by(|one, other| has_job(other).cmp(&has_job(one)).then(by_right(one, other))).map(|one| one.robot)
     }
 
     /// The robot to send to charge next: the one with the lowest battery level, then the one with the highest number.
@@ -211,22 +213,32 @@ impl MasterRobotKnowledge {
     /// awake and free or on their way, and the cause of the oldest piece.
     pub(super) fn neglects(&self, before: Time) -> Option<(u32, u32, Cause)> {
         let (pieces, cause) = self.work.neglected(before)?;
-        let comes = |robot: &&RobotList| {
-            let is_woken = self.called.get(&robot.robot) == Some(&true);
-            is_woken || !robot.asleep && !self.work.has_job(robot.robot)
+        let comes = |robot: &&RobotList| match self.called.get(&robot.robot) {
+            Some(is_woken) => *is_woken,
+            None => !robot.asleep && !self.work.has_job(robot.robot),
         };
         let needed = pieces.div_ceil(self.pieces_per_robot).saturating_sub(count(self.active().filter(comes).count()));
-        let needed = needed.min(count(self.callable(RobotList::can_be_woken).count()));
+        let sleepers = self.callable(RobotList::can_be_woken).count();
+        let needed = needed.min(count(sleepers + self.on_the_way_to_sleep().count()));
         (needed > 0).then_some((pieces, needed, cause))
+    }
+
+    /// Robots that were sent to sleep and do not sleep yet, since they finish a job or drive to their chargers.
+    fn on_the_way_to_sleep(&self) -> impl Iterator<Item = &RobotList> {
+        let is_sent = |robot: &RobotList| self.called.get(&robot.robot) == Some(&false);
+        let may = !self.counts_alone();
+        self.active().filter(move |robot| may && is_sent(robot) && robot.can_work())
     }
 
     fn callable(&self, which: impl Fn(&RobotList) -> bool) -> impl Iterator<Item = &RobotList> {
         self.active().filter(move |robot| which(robot) && !self.called.contains_key(&robot.robot))
     }
 
-    /// Records that a robot was called to wake or to charge.
+    /// Records that a robot was called to wake or to charge. One that is called back before it sleeps has not to react.
     pub fn note_call(&mut self, robot: u32, awake: bool) {
-        self.called.insert(robot, awake);
+        if !(awake && self.called.remove(&robot) == Some(false)) {
+            self.called.insert(robot, awake);
+        }
     }
 
     /// Counts a period down and ends the shifts that are over; returns their number of robots and their cause.
