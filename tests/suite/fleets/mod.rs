@@ -2,6 +2,7 @@
 
 mod assignment;
 mod battery;
+mod charging;
 mod composites;
 mod endings;
 mod environment;

@@ -189,6 +189,7 @@ impl Loop for SafeBattery {
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hardware.has_entered() {
             self.look_at_battery(knowledge, context);
+            knowledge.energy.gives_nothing = !self.gain.gives(knowledge.charge_block, context.now());
         }
         Ok(())
     }
@@ -223,7 +224,7 @@ impl Loop for SafeBattery {
         } else if must_charge {
             let charger = knowledge.charge_block;
             let other = match self.gain.gives(charger, context.now()) {
-                true => knowledge.charger_in_reach(),
+                true => knowledge.charger_in_reach(|other| self.gain.gives(other, context.now())),
                 false => knowledge.charger_elsewhere(|other| self.gain.gives(other, context.now())),
             };
             other.map(|other| {
@@ -324,35 +325,38 @@ impl RobotKnowledge {
         self.routes.use_charger(charger, others);
     }
 
-    /// The closest free charger, if the battery lasts for the way to it.
+    /// The closest free charger, otherwise the closest one where another robot is, if the battery lasts for the way to
+    /// it. At one where another robot is, this one can wait.
     fn charger_elsewhere(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
         if self.next != self.block {
             return None;
         }
-        let RobotKnowledge { lists, routes, next, charge_block, .. } = self;
-        let is_free = |charger: &Block| {
-            charger != charge_block && !routes.is_obstacle(*charger) && lists.peers.on(*charger).is_none()
-        };
-        let free: Vec<Block> =
-            lists.charging_places.iter().copied().filter(is_free).filter(|one| gives(*one)).collect();
-        let ways = free.into_iter().map(|charger| (routes.between(*next, charger), charger));
-        let (way, closest) = ways.min()?;
-        (way != UNREACHABLE && self.executions_left() > self.home_to(closest)).then_some(closest)
+        let own = self.charge_block;
+        let ((is_used, way), closest) = self.closest_charger(true, |charger| charger != own && gives(charger))?;
+        let waiting = if is_used { self.usual_reserve() / 2 } else { 0 };
+        let lasts = self.executions_left() > self.home_to(closest).saturating_add(waiting);
+        (way != UNREACHABLE && lasts).then_some(closest)
     }
 
     /// The closest free charger that is closer than the robot's own, if the battery does not last for the way to its
     /// own.
-    fn charger_in_reach(&mut self) -> Option<Block> {
+    fn charger_in_reach(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
         let home = self.home(self.next);
         if self.executions_left() > home || self.next != self.block {
             return None;
         }
-        let RobotKnowledge { lists, routes, next, .. } = self;
-        let is_free = |charger: &Block| !routes.is_obstacle(*charger) && lists.peers.on(*charger).is_none();
-        let free: Vec<Block> = lists.charging_places.iter().copied().filter(is_free).collect();
-        let ways = free.into_iter().map(|charger| (routes.between(*next, charger), charger));
-        let (_, closest) = ways.min()?;
+        let (_, closest) = self.closest_charger(false, gives)?;
         (self.home_to(closest) < home).then_some(closest)
+    }
+
+    /// The closest of these chargers, those without a robot first, or these alone: if another robot is there, the
+    /// number of moves, and its block.
+    fn closest_charger(&mut self, also_used: bool, is_meant: impl Fn(Block) -> bool) -> Option<((bool, u32), Block)> {
+        let RobotKnowledge { lists, routes, next, .. } = self;
+        let meant = lists.charging_places.iter().copied().filter(|one| is_meant(*one) && !routes.is_obstacle(*one));
+        let meant: Vec<(bool, Block)> = meant.map(|one| (lists.peers.on(one).is_some(), one)).collect();
+        let ways = meant.into_iter().filter(|(is_used, _)| also_used || !is_used);
+        ways.map(|(is_used, one)| ((is_used, routes.between(*next, one)), one)).min()
     }
 
     /// Another charger, if no way leads to the robot's own: the closest one that no robot uses any more, otherwise the

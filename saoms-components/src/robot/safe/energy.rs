@@ -43,6 +43,8 @@ pub(crate) struct Energy {
     set_out_for: Option<u32>,
     /// True if the robot was free when this execution began.
     was_free: bool,
+    /// True if its charger gave nothing not long ago.
+    pub(super) gives_nothing: bool,
 }
 
 /// Result of comparing the battery with a job.
@@ -143,13 +145,14 @@ impl RobotKnowledge {
         Duration::from_micros(self.period)
     }
 
-    /// True if a robot at its charger has too little energy to make way for others.
+    /// True if a robot at its charger has too little energy to make way for others, or shares it with others that can
+    /// wait.
     pub(super) fn holds_charger(&self) -> bool {
         if !self.is_at_charger() {
             return false;
         }
         let wanted = self.usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
-        self.executions_left() < wanted.min(self.executions_when_full())
+        self.executions_left() < wanted.min(self.executions_when_full()) || self.keeps_shared_charger()
     }
 
     /// True if three quarters of the battery are full.
@@ -277,7 +280,7 @@ impl RobotKnowledge {
         self.energy.pace.moving.saturating_mul(u32::try_from(slower).unwrap_or(u32::MAX))
     }
 
-    fn usual_reserve(&self) -> u32 {
+    pub(super) fn usual_reserve(&self) -> u32 {
         let full = self.executions_when_full();
         let usual = RESERVE.saturating_mul(self.tempo()).max(full / 4).min(full / 3);
         // Where zones answer late, robots that meet wait for them.

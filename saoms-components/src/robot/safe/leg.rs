@@ -24,7 +24,19 @@ pub(super) enum Urgency {
     Job,
     /// Reaching the charger in time.
     Energy,
+    /// Reaching a charger where another robot is, with a battery that hardly lasts.
+    Exhausted,
 }
+
+impl Urgency {
+    /// True if a robot has this priority because of such a way.
+    pub(super) fn is_of(self, priority: Priority) -> bool {
+        priority.rank >> AGE_BITS == self as u64
+    }
+}
+
+/// Number of bits of a rank that are the age of the way; those above are its urgency.
+const AGE_BITS: u32 = 56;
 
 impl Leg {
     /// Priority of the way: the more urgent one is higher; of two equally urgent ways the older one. It does not change
@@ -34,10 +46,10 @@ impl Leg {
             // A resting robot has no way to compare, and need not announce a new reason for resting.
             return Priority { rank: 0, robot };
         }
-        const MOST: u64 = (1 << 56) - 1;
+        const MOST: u64 = (1 << AGE_BITS) - 1;
         // The unit is 256 ns, so that the time of a run fits for more than 500 years.
         let age = MOST - (self.since.as_nanos() >> 8).min(MOST);
-        Priority { rank: (self.urgency as u64) << 56 | age, robot }
+        Priority { rank: (self.urgency as u64) << AGE_BITS | age, robot }
     }
 }
 
@@ -51,7 +63,8 @@ impl RobotKnowledge {
     /// The goal and its urgency, as the knowledge has them now.
     pub(super) fn leg_now(&self) -> (Option<Block>, Urgency) {
         let (goal, urgency) = if self.must_charge {
-            (Some(self.charge_block), Urgency::Energy)
+            let urgency = if self.cannot_wait() { Urgency::Exhausted } else { Urgency::Energy };
+            (Some(self.charge_block), urgency)
         } else if let Some(destination) = self.destination() {
             (Some(destination), Urgency::Job)
         } else if self.variables.transporter || self.offers_help || self.lingers > 0 {
@@ -60,7 +73,8 @@ impl RobotKnowledge {
             (Some(self.charge_block), Urgency::Home)
         };
         let arrived = goal.is_none_or(|goal| goal == self.next)
-            || (urgency == Urgency::Job && goal.is_some_and(|goal| self.reaches(goal, self.next)));
+            || (urgency == Urgency::Job && goal.is_some_and(|goal| self.reaches(goal, self.next)))
+            || (urgency != Urgency::Job && self.waits_for_charger());
         (goal, if arrived { Urgency::None } else { urgency })
     }
 

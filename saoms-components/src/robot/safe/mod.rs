@@ -22,6 +22,7 @@ mod path_follower;
 mod patience;
 mod robot_list;
 mod robot_state;
+mod sharing;
 mod traffic;
 mod waiting;
 mod zoned;

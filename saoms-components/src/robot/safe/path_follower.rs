@@ -141,7 +141,7 @@ impl Loop for SafePathFollower {
             self.waiting.end(context);
             return Ok(None);
         }
-        if knowledge.leg.urgency == Urgency::Energy {
+        if knowledge.leg.urgency >= Urgency::Energy {
             context.because(knowledge.energy.turned);
         }
         Ok(Some(match knowledge.leg.goal {

@@ -98,6 +98,11 @@ impl Traffic {
         self.near.extend(peers.all().filter(|peer| peer.block.distance(at) <= 3).cloned());
     }
 
+    /// The robots at most three blocks away.
+    pub(super) fn near(&self) -> &[Position] {
+        &self.near
+    }
+
     pub(in crate::robot) fn memory(&self) -> TrafficMemory {
         let Traffic { wanted, shown, previous, waited, avoided, .. } = *self;
         let avoided = avoided.map(|(block, holder)| Avoided { block, holder });

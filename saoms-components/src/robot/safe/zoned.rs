@@ -114,7 +114,7 @@ impl RobotKnowledge {
     /// Number of blocks that have to be granted ahead. A robot that has to reach its charger in time needs the whole
     /// way there; another one as many as it drives until it has an answer.
     fn blocks_ahead(&self) -> u32 {
-        if self.leg.urgency == Urgency::Energy {
+        if self.leg.urgency >= Urgency::Energy {
             return MOST_AHEAD;
         }
         let latency = self.zones.as_ref().map_or(0, |zones| zones.latency());
