@@ -7,6 +7,7 @@ mod apart;
 mod budget;
 mod charger;
 mod classic_walls;
+mod corridors;
 mod divided;
 mod environments;
 mod hearing;
@@ -51,4 +52,5 @@ saoms_api::fleet_rules!(
     peers::FAULTS,
     peers::BROKER,
     scenario::strain::RULE,
+    corridors::RULE,
 );

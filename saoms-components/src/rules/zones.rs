@@ -26,14 +26,14 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 /// A zone with its blocks.
-struct ZoneOfSite<'f> {
+pub(super) struct ZoneOfSite<'f> {
     index: usize,
     /// The name on the bus of the topic of its grants: zones that share it are zones of one site.
     grants: &'f str,
     /// Index of its world.
     world: Option<usize>,
-    map: Map,
-    territory: Territory,
+    pub(super) map: Map,
+    pub(super) territory: Territory,
 }
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
@@ -61,7 +61,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
 
 impl<'f> ZoneOfSite<'f> {
     /// The zone; `None` where its map is told to be wrong elsewhere.
-    fn of(
+    pub(super) fn of(
         fleet: &FleetView<'f>,
         index: usize,
         properties: &ZoneProperties,
@@ -83,7 +83,12 @@ impl<'f> ZoneOfSite<'f> {
         Ok(Some(ZoneOfSite { index, grants, world, map, territory }))
     }
 
-    fn place(&self) -> Place {
+    /// True if another zone grants blocks of the same map.
+    pub(super) fn is_beside(&self, other: &ZoneOfSite<'_>) -> bool {
+        (self.grants, self.world) == (other.grants, other.world) && self.index != other.index
+    }
+
+    pub(super) fn place(&self) -> Place {
         Place::component(self.index)
     }
 }
