@@ -68,6 +68,11 @@ impl Gone {
         self.robots.iter().filter(|known| known.failed).map(|known| (known.robot, known.block, known.since))
     }
 
+    /// The time since when a robot is out, unless it is back.
+    pub(crate) fn since(&self, robot: u32) -> Option<Time> {
+        self.robots.iter().find(|known| known.robot == robot).map(|known| known.since)
+    }
+
     /// The numbers of the robots that are off the floor.
     pub(crate) fn robots(&self) -> impl Iterator<Item = u32> {
         self.robots.iter().filter(|known| !known.failed).map(|known| known.robot)

@@ -8,12 +8,13 @@ use saoms_api::{
 use super::assignment::{AssignmentPolicy, Crew, MasterAssignment, MasterEnvironmentKnowledge};
 use super::event_filter::EventFilter;
 use super::open_luggage::{OpenLuggage, OpenMemory};
+use super::unanswered::Unanswered;
 use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
     AREA, ASSIGNMENT, Assignment, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT,
     EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LuggageStage, POSITION,
-    Position, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit, is_visit,
+    Position, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, VISIT, Visit, is_visit,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
@@ -75,6 +76,9 @@ pub struct MasterEnvironment {
     situations_heard: Subscription<CriticalSituation>,
     #[subscribes(REMOVAL)]
     removals: Subscription<Removal>,
+    #[publishes(REMOVAL_ASKED)]
+    removals_asked: Publisher<Fault>,
+    unanswered: Unanswered,
     #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
     #[publishes(CRITICAL_SITUATION)]
@@ -116,6 +120,8 @@ impl Component for MasterEnvironment {
             robots: Subscription::default(),
             situations_heard: Subscription::default(),
             removals: Subscription::default(),
+            removals_asked: Publisher::default(),
+            unanswered: Unanswered::default(),
             luggage: Publisher::default(),
             situations: Publisher::default(),
             exceptional: Publisher::default(),
@@ -189,6 +195,9 @@ impl Component for MasterEnvironment {
             }
         }
         self.open_again(context)?;
+        for fault in self.unanswered.due(&self.knowledge, context) {
+            context.send(&self.removals_asked, fault)?;
+        }
         for request in self.knowledge.open.ask_again() {
             self.request(request, context)?;
         }
@@ -244,6 +253,9 @@ impl Component for MasterEnvironment {
     }
 
     fn waits_for(&self) -> Option<String> {
+        if let Some(robot) = self.unanswered.first() {
+            return Some(format!("the world to say what robot {robot} left, and where"));
+        }
         Some(match self.knowledge.open.first() {
             None => "events".to_owned(),
             Some((first, more)) => format!("a robot to carry {}", pieces(first, more)),

@@ -5,6 +5,7 @@ mod environment;
 mod event_filter;
 mod open_luggage;
 pub mod robot;
+mod unanswered;
 
 pub use assignment::{
     AssignmentDecision, AssignmentPolicy, Crew, MasterAssignment, MasterEnvironmentKnowledge, Member, Unassigned,

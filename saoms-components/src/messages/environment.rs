@@ -289,6 +289,12 @@ impl Validate for Fault {
 /// Published by the world; read by the master of the environment and the environment.
 pub const REMOVAL: Topic<Removal> = Topic::event("REMOVALTOPIC").optional();
 
+/// Robots that are gone, or whose component failed, and of which no world has said yet what they left behind: the
+/// answer, or the news of the robot, was lost.
+///
+/// Published by the master of the environment; read by the world.
+pub const REMOVAL_ASKED: Topic<Fault> = Topic::event("REMOVALASKEDTOPIC").optional();
+
 /// A robot that is off the floor or has failed, and where its luggage is now.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct Removal {

@@ -80,7 +80,7 @@ impl World {
             let block = self.referee.block(robot)?;
             let (delivered, luggage) = self.put_down(context, robot, block);
             if !delivered.is_empty() || !luggage.is_empty() {
-                context.send(&self.removals, Removal { robot, block, luggage, delivered })?;
+                self.say_left(context, Removal { robot, block, luggage, delivered })?;
             }
         }
         Ok(())

@@ -9,6 +9,7 @@ use super::luggage::{PieceMemory, Stock};
 use super::referee::{Body, Meeting, Referee, Slowness};
 use crate::grid::Block;
 use crate::hardware::{Action, Progress};
+use crate::messages::Removal;
 use crate::state::Numbers;
 use crate::validation::SpeakerMemory;
 
@@ -32,6 +33,7 @@ struct WorldMemory {
     is_done: Option<bool>,
     collided: u64,
     broken: Vec<u32>,
+    left: Vec<Removal>,
 }
 
 #[derive(Clone, Debug, Field)]
@@ -130,6 +132,7 @@ impl World {
             is_done,
             collided: self.collided as u64,
             broken: self.broken.iter().copied().collect(),
+            left: self.left.values().cloned().collect(),
         })
     }
 
@@ -142,6 +145,7 @@ impl World {
         self.vote = memory.is_done.map(|is_done| if is_done { Work::Done } else { Work::Open });
         self.collided = usize::try_from(memory.collided).unwrap_or(usize::MAX);
         self.broken = memory.broken.into_iter().collect();
+        self.left = memory.left.into_iter().map(|left| (left.robot, left)).collect();
         self.memory.forget();
         Ok(())
     }

@@ -6,28 +6,27 @@ mod luggage;
 mod memory;
 mod properties;
 mod referee;
+mod removals;
 mod strain;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use saoms_api::{
-    Cause, Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Time, Work, record, warn,
-};
+use saoms_api::{Cause, Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Work, warn};
 
-use crate::grid::Block;
 use crate::hardware::Hardware;
 use crate::messages::{
     AREA, COLLISION, Collision, DRAIN, Drain, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
-    FaultKind, LuggageStage, OUTAGE, Outage, REMOVAL, ROBOT_LIST, Removal, RobotList, SLOW, Slow, is_visit,
+    FaultKind, LuggageStage, OUTAGE, Outage, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, SLOW, Slow,
+    is_visit,
 };
 use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem};
 
 pub use properties::WorldProperties;
 
-use luggage::{HandlingOutcome, Stock};
+use luggage::Stock;
 use memory::Memory;
 use referee::Referee;
 
@@ -70,6 +69,10 @@ pub struct World {
     collisions: Publisher<Collision>,
     #[publishes(REMOVAL)]
     removals: Publisher<Removal>,
+    #[subscribes(REMOVAL_ASKED)]
+    removals_asked: Subscription<Fault>,
+    /// What it said last that a robot left, by robot.
+    left: BTreeMap<u32, Removal>,
     vote: Option<Work>,
     /// Number of collisions.
     collided: usize,
@@ -97,6 +100,8 @@ impl Component for World {
             outages: Subscription::default(),
             collisions: Publisher::default(),
             removals: Publisher::default(),
+            removals_asked: Subscription::default(),
+            left: BTreeMap::new(),
             vote: None,
             collided: 0,
             broken: BTreeSet::new(),
@@ -140,6 +145,13 @@ impl Component for World {
                         context.because(Cause::default());
                     }
                 }
+            }
+        }
+        for (header, fault) in context.receive(&self.removals_asked).with_headers() {
+            if fault.silences() && self.validator.accepts(fault, header, None, context) {
+                context.because(header.cause);
+                self.say_again(context, fault, fault.since.unwrap_or(header.sent))?;
+                context.because(Cause::default());
             }
         }
         // The components that speak for each robot.
@@ -238,62 +250,6 @@ impl World {
             context.count("luggage.given_up", -1);
         }
         self.vote(context);
-    }
-
-    /// Somebody took a robot off the floor.
-    fn take_away(&mut self, context: &mut Context<'_>, fault: &Fault) -> Result<(), Failure> {
-        let robot = fault.robot;
-        if self.validator.check_known(robot).is_err() {
-            // The master reports it.
-            return Ok(());
-        }
-        // A robot of another world is off this floor anyway, and lay nothing down here.
-        let (block, delivered, luggage) = match self.referee.remove(robot) {
-            Ok(None) => return Ok(()),
-            Ok(Some(block)) => {
-                let (delivered, luggage) = self.put_down(context, robot, block);
-                context.count("robots.gone", 1);
-                context.effect(record!(frees_block: "robot {robot} is gone: {block} is free", robot, block));
-                warn!(context, "{fault}: {block} is free");
-                (block, delivered, luggage)
-            }
-            Err(_) => (Block::default(), Vec::new(), Vec::new()),
-        };
-        context.send(&self.removals, Removal { robot, block, luggage, delivered })
-    }
-
-    /// A robot lets go of what it carries: what is at its destination there is delivered. Returns the numbers of these
-    /// pieces, and those of the others.
-    fn put_down(&mut self, context: &mut Context<'_>, robot: u32, block: Block) -> (Vec<u32>, Vec<u32>) {
-        let delivered = self.stock.carried_to(robot, block);
-        for luggage in &delivered {
-            if let Ok(HandlingOutcome::Delivered { given_up }) = self.stock.deposit(*luggage, robot, block) {
-                self.count_delivery(context, given_up);
-            }
-        }
-        (delivered, self.stock.unload(robot, block))
-    }
-
-    /// The component of a robot failed, and lost what it knew: the robot is stopped where it is, and others can take
-    /// over what it carries.
-    fn stop_failed(&mut self, context: &mut Context<'_>, fault: &Fault, since: Time) -> Result<(), Failure> {
-        let robot = fault.robot;
-        let removal = match self.referee.fail(robot, since) {
-            Ok(is_out) => {
-                let block = self.referee.block(robot)?;
-                let (delivered, luggage) = match is_out || self.referee.has_forgotten(robot) {
-                    true => self.put_down(context, robot, block),
-                    false => (Vec::new(), Vec::new()),
-                };
-                context
-                    .effect(record!(stops_failed_robot: "robot {robot} has failed: it stays at {block}", robot, block));
-                warn!(context, "{fault}: it stays at {block}");
-                Removal { robot, block, luggage, delivered }
-            }
-            // It is none of this world.
-            Err(_) => Removal { robot, ..Removal::default() },
-        };
-        context.send(&self.removals, removal)
     }
 
     fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {

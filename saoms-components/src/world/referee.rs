@@ -341,6 +341,12 @@ impl Referee {
         Ok(Some(block))
     }
 
+    /// True if a robot that is out since then is off the floor, or out of service where it stands, or is back.
+    pub(super) fn was_out(&self, robot: u32, is_gone: bool, since: Time) -> bool {
+        let body = self.bodies.get(&robot);
+        body.is_some_and(|body| body.entered > since || if is_gone { body.gone } else { body.retired })
+    }
+
     pub(super) fn is_retired(&self, robot: u32) -> bool {
         self.bodies.get(&robot).is_some_and(|body| body.retired)
     }

@@ -167,3 +167,26 @@ fn a_robot_that_comes_back_starts_anew() {
         assert_eq!(run.sections["collisions"], json!({"vertex": 0, "swap": 0}), "{policy}");
     }
 }
+
+#[test]
+fn what_it_left_is_asked_again_if_the_answer_or_the_news_is_lost() {
+    let lost = ["REMOVALTOPIC", "ETOPIC to World"];
+    for lost in lost {
+        let scenario = format!(
+            "at 0.5s luggage (2,2) to (8,2); at 0.5s luggage (2,3) to (8,3); at 0.5s luggage (2,1) to (8,1);
+             at 1s for 5s violate 100 % on {lost}; at 2s gone Robot2; at 15s end"
+        );
+        let run = fleet(&scenario, "safe", true, &[]).run(1, LIMIT);
+        assert_delivered(&run, 3, lost);
+        assert_eq!(run.sections["robots"]["gone"], 1, "{lost}");
+        assert_eq!(run.sections["collisions"], json!({"vertex": 0, "swap": 0}), "{lost}");
+    }
+}
+
+#[test]
+fn a_run_whose_world_is_never_heard_says_what_it_waits_for() {
+    let scenario = "at 0.5s luggage (2,2) to (8,2); at 0.5s luggage (2,3) to (8,3); at 0.5s luggage (2,1) to (8,1);
+        at 1s violate 100 % on REMOVALTOPIC; at 2s gone Robot2";
+    let log = fleet(scenario, "safe", true, &[]).run(1, Duration::from_secs(60)).log();
+    assert!(log.contains("waits for the world to say what robot 2 left, and where"), "{log}");
+}

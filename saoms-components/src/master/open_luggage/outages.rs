@@ -1,7 +1,9 @@
 //! Robots that are out without having said so: somebody took them off the floor, or their component failed. What they
 //! were to bring is opened again.
 
-use saoms_api::{Field, Header};
+use std::collections::BTreeMap;
+
+use saoms_api::{Field, Header, Time};
 
 use super::OpenLuggage;
 use crate::grid::Block;
@@ -46,6 +48,10 @@ impl OpenLuggage {
     /// The world says what a robot left, and where.
     pub(in crate::master) fn hear_removal(&mut self, removal: &Removal) {
         let Removal { robot, block, luggage, delivered } = removal;
+        if self.left.get(robot) == Some(removal) {
+            // The answer to a question that was asked again meanwhile.
+            return;
+        }
         for luggage in luggage {
             let piece = self.pieces.get_mut(luggage);
             if let Some(piece) = piece.filter(|piece| piece.taken == Some(*robot) || piece.left_by == Some(*robot)) {
@@ -69,6 +75,16 @@ impl OpenLuggage {
             one.fault.clone()
         });
         told.collect()
+    }
+
+    /// Robots of which no world has said what they left, which is needed to go on, with what happened to them.
+    pub(in crate::master) fn unanswered(&self) -> BTreeMap<u32, Fault> {
+        let untold = self.failed.iter().filter(|(_, one)| !one.is_told).map(|(robot, one)| (*robot, one.fault.clone()));
+        let left = self.pieces.values().filter_map(|piece| piece.left_by).map(|robot| {
+            let gone = || Fault { since: Some(self.gone.since(robot).unwrap_or(Time::START)), ..Fault::gone(robot) };
+            (robot, self.failed.get(&robot).map_or_else(gone, |one| one.fault.clone()))
+        });
+        untold.chain(left).filter(|(robot, _)| !self.left.contains_key(robot)).collect()
     }
 
     /// Forgets the failures of robots that are back, once all was done about them.
