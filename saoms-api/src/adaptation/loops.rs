@@ -7,36 +7,31 @@ use crate::{Context, Failure, Knowledge};
 /// Loops with the names that composites use, in their order.
 pub type NamedLoops = Vec<(String, Box<dyn DynLoop>)>;
 
-/// The loops of a component in their order.
+/// The loops of a component in their order. What an execution needs of them is close together in memory.
 #[derive(Default)]
 pub struct Loops {
-    loops: Vec<Named>,
+    instances: Vec<Box<dyn DynLoop>>,
+    /// What each may change.
+    writable: Vec<Writable>,
+    names: Vec<String>,
     snapshot: Snapshot,
 }
 
-struct Named {
-    name: String,
-    instance: Box<dyn DynLoop>,
-    writable: Writable,
-}
-
-impl Named {
-    /// Says whose failure it is.
-    fn of_loop(&self, result: Result<(), Failure>) -> Result<(), Failure> {
-        result.map_err(|failure| failure.at(format_args!("loop `{}`", self.name)))
-    }
+/// Says whose failure it is.
+fn of_loop(name: &str, result: Result<(), Failure>) -> Result<(), Failure> {
+    result.map_err(|failure| failure.at(format_args!("loop `{name}`")))
 }
 
 impl Loops {
     /// These loops, by the names that composites use.
     pub fn of(loops: impl IntoIterator<Item = (String, Box<dyn DynLoop>)>) -> Loops {
-        let named = |(name, instance)| Named { name, instance, writable: Writable::default() };
-        Loops { loops: loops.into_iter().map(named).collect(), snapshot: Snapshot::default() }
+        let (names, instances): (Vec<_>, Vec<_>) = loops.into_iter().unzip();
+        Loops { writable: vec![Writable::default(); names.len()], instances, names, snapshot: Snapshot::default() }
     }
 
     /// The names in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.loops.iter().map(|named| named.name.as_str())
+        self.names.iter().map(String::as_str)
     }
 
     /// Adds the entries of all loops to the knowledge, then initializes all.
@@ -45,21 +40,21 @@ impl Loops {
     /// The first failure of a loop; or two of them, or one and the component, have an entry of the same name.
     pub fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let built_in: &'static [EntryDeclaration] = knowledge.declared();
-        for named in &mut self.loops {
-            named.writable.effects = named.instance.effects();
-            if let Some(entries) = named.instance.entries() {
-                named.writable.own = entries.declared();
-                let added = knowledge.extras_mut().add(entries, built_in);
-                named.of_loop(added)?;
+        let Loops { instances, writable, names, .. } = self;
+        for ((instance, writable), name) in instances.iter_mut().zip(&mut *writable).zip(&*names) {
+            writable.effects = instance.effects();
+            if let Some(entries) = instance.entries() {
+                writable.own = entries.declared();
+                of_loop(name, knowledge.extras_mut().add(entries, built_in))?;
             }
         }
-        for (place, named) in self.placed() {
-            context.name_loop(place, &named.name);
+        for (place, ((instance, writable), name)) in (0..).zip(instances.iter_mut().zip(writable).zip(names)) {
+            context.name_loop(place, name);
             context.enter_loop(place);
-            knowledge.extras_mut().permit(named.writable);
-            let result = named.instance.initialize(knowledge, context);
+            knowledge.extras_mut().permit(*writable);
+            let result = instance.initialize(knowledge, context);
             knowledge.extras_mut().permit(Writable::default());
-            named.of_loop(result)?;
+            of_loop(name, result)?;
         }
         context.leave_loops();
         Ok(())
@@ -70,10 +65,11 @@ impl Loops {
     /// # Errors
     /// The first failure of a loop.
     pub fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for (place, named) in self.placed() {
-            context.enter_loop(place);
-            let result = named.instance.monitor(knowledge, context);
-            named.of_loop(result)?;
+        for (place, instance) in self.instances.iter_mut().enumerate() {
+            context.enter_loop(place as u32);
+            if let Err(failure) = instance.monitor(knowledge, context) {
+                return of_loop(&self.names[place], Err(failure));
+            }
         }
         context.leave_loops();
         Ok(())
@@ -85,11 +81,12 @@ impl Loops {
     /// # Errors
     /// The first failure of a loop; one that changes an effector which it does not declare has failed.
     pub fn adapt(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for (place, named) in (0..).zip(&mut self.loops) {
-            context.enter_loop(place);
-            self.snapshot.permit(named.writable);
-            let result = named.instance.adapt(knowledge, &mut self.snapshot, context);
-            named.of_loop(result)?;
+        for (place, (instance, writable)) in self.instances.iter_mut().zip(&self.writable).enumerate() {
+            context.enter_loop(place as u32);
+            self.snapshot.permit(*writable);
+            if let Err(failure) = instance.adapt(knowledge, &mut self.snapshot, context) {
+                return of_loop(&self.names[place], Err(failure));
+            }
         }
         context.leave_loops();
         Ok(())
@@ -99,7 +96,7 @@ impl Loops {
     /// and follows from its decision. For components that carry out the orders which loops write into entries. Without
     /// such a loop it is the component's own.
     pub fn act_for<T>(&self, entry: &str, context: &mut Context<'_>, code: impl FnOnce(&mut Context<'_>) -> T) -> T {
-        let place = self.loops.iter().position(|named| named.writable.has(entry));
+        let place = self.writable.iter().position(|writable| writable.has(entry));
         if let Some(place) = place {
             context.enter_loop(place as u32);
         }
@@ -113,16 +110,10 @@ impl Loops {
         &mut self,
         mut code: impl FnMut(&str, &mut dyn DynLoop) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        for named in &mut self.loops {
-            let result = code(&named.name, &mut *named.instance);
-            named.of_loop(result)?;
+        for (name, instance) in self.names.iter().zip(&mut self.instances) {
+            of_loop(name, code(name, &mut **instance))?;
         }
         Ok(())
-    }
-
-    /// The loops with the numbers of their places.
-    fn placed(&mut self) -> impl Iterator<Item = (u32, &mut Named)> {
-        (0..).zip(&mut self.loops)
     }
 
     /// Ends all.
@@ -130,12 +121,10 @@ impl Loops {
     /// # Errors
     /// The first failure of a loop; the others are ended all the same.
     pub fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.loops
-            .iter_mut()
-            .map(|named| {
-                let result = named.instance.shutdown(knowledge, context);
-                named.of_loop(result)
-            })
+        self.names
+            .iter()
+            .zip(&mut self.instances)
+            .map(|(name, instance)| of_loop(name, instance.shutdown(knowledge, context)))
             .fold(Ok(()), Result::and)
     }
 }

@@ -23,6 +23,10 @@ impl Hasher for KeyHasher {
         self.0 = fold(self.0, word);
     }
 
+    fn write_i32(&mut self, word: i32) {
+        self.write_u32(word.cast_unsigned());
+    }
+
     fn write_u32(&mut self, word: u32) {
         self.0 = fold(self.0, u64::from(word));
     }

@@ -67,9 +67,10 @@ impl Bus {
             .filter(|(number, (component, _))| is_new(**number, *component))
             .map(|(number, (component, position))| (*number, *component, *position))
             .collect();
+        let topic_number = topic.0 as usize;
         for (number, component, position) in wanted {
             let id = TopicId(u32::try_from(self.topics.len()).unwrap_or(u32::MAX));
-            let topic = &mut self.topics[topic.0 as usize];
+            let topic = &mut self.topics[topic_number];
             let mut copy = topic.copy_for(&position);
             topic.leave(position);
             if let Some(place) = topic.triggers.iter().position(|triggered| *triggered == component) {
@@ -78,7 +79,9 @@ impl Bus {
             let links = &mut topic.readers.links;
             let place = links.partition_point(|link| link.number < number);
             links.insert(place, Link { number, component, topic: id });
-            self.topics.push(copy);
+            self.add(copy, self.published + 1);
+            self.published += 1;
+            self.relinked = self.published;
         }
     }
 

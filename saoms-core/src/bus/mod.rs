@@ -23,6 +23,7 @@ mod topic;
 
 use std::collections::HashMap;
 use std::fmt;
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
@@ -36,6 +37,12 @@ use topic::{BusTopic, ReadPosition};
 #[derive(Default)]
 pub struct Bus {
     topics: Vec<BusTopic>,
+    /// Number of messages so far, and at the last time that a reader got a link.
+    published: u64,
+    relinked: u64,
+    /// The number of the newest message of each topic, close together in memory: whoever collects looks at all of its
+    /// topics, of which most have none.
+    newest: Vec<u64>,
     names: HashMap<Arc<str>, TopicId>,
     /// Number of readers so far.
     readers: u32,
@@ -62,6 +69,17 @@ pub struct TopicReader {
     /// The component that the topic's messages trigger.
     triggers: Option<u32>,
 }
+
+/// The place of a reader's news: its topic, and its place among the readers of regions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watch {
+    /// From 1.
+    topic: NonZeroU32,
+    place: u32,
+}
+
+/// The place of a reader without a region.
+const WHOLE: u32 = u32::MAX;
 
 /// A publisher or reader whose type or kind differs from that of the topic.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,6 +192,9 @@ impl Bus {
     #[inline]
     #[must_use = "a message that is lost is told"]
     pub fn publish(&mut self, topic: TopicId, message: SharedMessage) -> bool {
+        self.published += 1;
+        let newest = &mut self.newest[topic.0 as usize];
+        *newest = (*newest).max(self.published);
         self.topics[topic.0 as usize].publish(message)
     }
 
@@ -217,6 +238,34 @@ impl Bus {
     /// True unless events wait on a topic that fill half of the queue of a reader.
     pub fn has_room(&self, topic: TopicId) -> bool {
         self.topics[topic.0 as usize].has_room()
+    }
+
+    /// Number of messages so far, of all topics.
+    #[inline]
+    pub fn published(&self) -> u64 {
+        self.published
+    }
+
+    /// Number of messages at which a reader got another place the last time, so that a [`Watch`] of before holds no more.
+    #[inline]
+    pub fn relinked(&self) -> u64 {
+        self.relinked
+    }
+
+    /// Where to see whether a reader has news, as long as it keeps its place.
+    pub fn watch(&self, subscription: &TopicReader) -> Watch {
+        let place = match subscription.reader {
+            ReadPosition::Region(place) => place,
+            _ => WHOLE,
+        };
+        Watch { topic: NonZeroU32::MIN.saturating_add(self.read_by(subscription) as u32), place }
+    }
+
+    /// True if a reader has no news, since it collected when the bus had had this number of messages.
+    #[inline]
+    pub fn is_quiet(&self, watch: Watch, published: u64) -> bool {
+        let topic = (watch.topic.get() - 1) as usize;
+        if watch.place == WHOLE { self.newest[topic] <= published } else { !self.topics[topic].is_stirred(watch.place) }
     }
 
     /// True if there are messages that a reader has not collected.
@@ -331,6 +380,11 @@ impl Bus {
         self.topics[topic.0 as usize].name_hash
     }
 
+    fn add(&mut self, topic: BusTopic, newest: u64) {
+        self.topics.push(topic);
+        self.newest.push(newest);
+    }
+
     fn user(&mut self, name: &str, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Result<TopicId, Mismatch> {
         if let Some(&id) = self.names.get(name) {
             let topic = &mut self.topics[id.0 as usize];
@@ -339,7 +393,7 @@ impl Bus {
         }
         let id = TopicId(u32::try_from(self.topics.len()).unwrap_or(u32::MAX));
         let name: Arc<str> = Arc::from(name);
-        self.topics.push(BusTopic::new(Arc::clone(&name), declared, by));
+        self.add(BusTopic::new(Arc::clone(&name), declared, by), 0);
         self.names.insert(name, id);
         Ok(id)
     }

@@ -6,6 +6,7 @@ use std::collections::{HashMap, VecDeque};
 use saoms_api::host::SharedMessage;
 use saoms_api::{Departed, Region};
 
+use super::hash::KeyHashing;
 use super::state::StateTable;
 
 /// Number of blocks along a side of a cell, as a power of two.
@@ -16,6 +17,13 @@ const CELLS: i64 = 1024;
 /// Least number of changes at which a reader makes those of one entry one.
 const TIDY: usize = 64;
 
+/// A reader among those of a cell, with its region: a message looks at all of them, and concerns few.
+#[derive(Clone, Copy)]
+struct InCell {
+    place: u32,
+    region: Region,
+}
+
 type Cell = (i32, i32);
 type Block = (i32, i32);
 
@@ -23,12 +31,15 @@ type Block = (i32, i32);
 #[derive(Clone, Default)]
 pub(super) struct RegionReaders {
     readers: Vec<RegionReader>,
+    /// Whether a collection has anything to do, for each reader: most have no news most of the time, and their state is
+    /// far apart in memory.
+    stirred: Vec<bool>,
     free: Vec<u32>,
     /// The readers whose region has blocks in a cell, and those whose region is too large for that.
-    cells: HashMap<Cell, Vec<u32>>,
-    wide: Vec<u32>,
+    cells: HashMap<Cell, Vec<InCell>, KeyHashing>,
+    wide: Vec<InCell>,
     /// The entries of a state topic by the cell of their block.
-    entries: HashMap<Cell, Vec<u32>>,
+    entries: HashMap<Cell, Vec<u32>, KeyHashing>,
 }
 
 #[derive(Clone)]
@@ -44,7 +55,7 @@ struct RegionReader {
     /// Number of changes at which those of one entry become one, so that they take no memory without end while nobody
     /// collects.
     tidy_at: usize,
-    known: HashMap<u32, Departed>,
+    known: HashMap<u32, Departed, KeyHashing>,
     /// Entries that the reader knew and that left its region.
     departed: Vec<(u32, Departed)>,
     /// The last collection, which may be put back: entries, each with whether it was new, and those that had left.
@@ -90,7 +101,7 @@ impl RegionReaders {
             lost: 0,
             changed: Vec::new(),
             tidy_at: TIDY,
-            known: HashMap::new(),
+            known: HashMap::default(),
             departed: Vec::new(),
             collected: Vec::new(),
             reported: Vec::new(),
@@ -102,6 +113,7 @@ impl RegionReaders {
             }
             None => {
                 self.readers.push(reader);
+                self.stirred.push(false);
                 self.readers.len() as u32 - 1
             }
         };
@@ -142,25 +154,28 @@ impl RegionReaders {
             gone.sort_unstable();
             reader.departed.extend(gone.iter().filter_map(|entry| Some((*entry, reader.known.remove(entry)?))));
         }
+        self.stirred[place as usize] = true;
         self.enter_cells(place);
         self.look_around(place, table);
     }
 
     fn enter_cells(&mut self, place: u32) {
-        match cells(&self.readers[place as usize].region) {
-            Some(all) => all.for_each(|cell| self.cells.entry(cell).or_default().push(place)),
-            None => self.wide.push(place),
+        let region = self.readers[place as usize].region;
+        let reader = InCell { place, region };
+        match cells(&region) {
+            Some(all) => all.for_each(|cell| self.cells.entry(cell).or_default().push(reader)),
+            None => self.wide.push(reader),
         }
     }
 
     fn leave_cells(&mut self, place: u32) {
         let Some(all) = cells(&self.readers[place as usize].region) else {
-            self.wide.retain(|other| *other != place);
+            self.wide.retain(|other| other.place != place);
             return;
         };
         for cell in all {
             if let Some(readers) = self.cells.get_mut(&cell) {
-                readers.retain(|other| *other != place);
+                readers.retain(|other| other.place != place);
                 if readers.is_empty() {
                     self.cells.remove(&cell);
                 }
@@ -171,6 +186,7 @@ impl RegionReaders {
     /// Notes the entries in the region of a reader that it does not know.
     fn look_around(&mut self, place: u32, table: Option<&StateTable>) {
         let Some(table) = table else { return };
+        self.stirred[place as usize] = true;
         let reader = &mut self.readers[place as usize];
         let mut changed = std::mem::take(&mut reader.changed);
         let mut look = |entries: &[u32]| {
@@ -202,10 +218,11 @@ impl RegionReaders {
         }
         let around = [old, new.filter(|new| Some(*new) != old)].into_iter().flatten();
         let around = around.filter_map(|cell| self.cells.get(&cell)).flatten().chain(&self.wide);
-        for place in around {
-            let reader = &mut self.readers[*place as usize];
-            let concerns = now.is_some_and(|now| reader.region.contains(now)) || reader.known.contains_key(&entry);
-            if concerns {
+        for InCell { place, region } in around {
+            // A reader knows no entry that was outside of its region, or the change by which it left still waits.
+            if now.is_some_and(|now| region.contains(now)) || before.is_some_and(|before| region.contains(before)) {
+                self.stirred[*place as usize] = true;
+                let reader = &mut self.readers[*place as usize];
                 reader.changed.push(entry);
                 reader.tidy();
             }
@@ -216,22 +233,28 @@ impl RegionReaders {
     pub(super) fn event(&mut self, message: &SharedMessage) {
         let Some(block) = message.place() else { return };
         let around = self.cells.get(&cell(block)).into_iter().flatten().chain(&self.wide);
-        for place in around {
-            let reader = &mut self.readers[*place as usize];
-            if !reader.region.contains(block) {
+        for InCell { place, region } in around {
+            if !region.contains(block) {
                 continue;
             }
+            let reader = &mut self.readers[*place as usize];
             if reader.events.len() >= reader.queue {
                 reader.events.pop_front();
                 reader.lost += 1;
             }
             reader.events.push_back(message.clone());
+            self.stirred[*place as usize] = true;
         }
     }
 
+    /// True if a collection has anything to do.
+    #[inline]
+    pub(super) fn is_stirred(&self, place: u32) -> bool {
+        self.stirred[place as usize]
+    }
+
     pub(super) fn has_news(&self, place: u32) -> bool {
-        let reader = &self.readers[place as usize];
-        !(reader.events.is_empty() && reader.changed.is_empty() && reader.departed.is_empty()) || reader.lost > 0
+        self.readers[place as usize].has_news()
     }
 
     /// Appends what is new to a reader, oldest first, and what is not in its region any more. Returns the number of
@@ -243,7 +266,12 @@ impl RegionReaders {
         inbox: &mut Vec<SharedMessage>,
         departed: &mut Vec<Departed>,
     ) -> u64 {
+        if !self.stirred[place as usize] {
+            return 0;
+        }
         let reader = &mut self.readers[place as usize];
+        // What this collection leaves behind to be put back is cleared by the next one.
+        self.stirred[place as usize] = reader.has_news();
         inbox.extend(reader.events.drain(..));
         if let Some(table) = table {
             reader.collect_changes(table, inbox);
@@ -259,6 +287,7 @@ impl RegionReaders {
     /// Puts back the last collection from a state topic: its messages come again. False for an event topic, whose
     /// messages stay in the inbox.
     pub(super) fn put_back(&mut self, place: u32, is_state: bool) -> bool {
+        self.stirred[place as usize] = true;
         let reader = &mut self.readers[place as usize];
         for (entry, is_new) in reader.collected.drain(..) {
             if is_new {
@@ -273,6 +302,7 @@ impl RegionReaders {
 
     /// Lets a reader receive again all that is retained in its region.
     pub(super) fn rewind(&mut self, place: u32, table: Option<&StateTable>) {
+        self.stirred[place as usize] = true;
         let reader = &mut self.readers[place as usize];
         reader.known.clear();
         (reader.changed, reader.departed) = Default::default();
@@ -291,6 +321,10 @@ impl RegionReaders {
 }
 
 impl RegionReader {
+    fn has_news(&self) -> bool {
+        !(self.events.is_empty() && self.changed.is_empty() && self.departed.is_empty()) || self.lost > 0
+    }
+
     /// Makes the changes of one entry one, once there are many.
     fn tidy(&mut self) {
         if self.changed.len() >= self.tidy_at {

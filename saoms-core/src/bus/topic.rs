@@ -227,6 +227,12 @@ impl BusTopic {
         }
     }
 
+    /// True if a reader of a region has news.
+    #[inline]
+    pub(super) fn is_stirred(&self, place: u32) -> bool {
+        self.regions.as_ref().is_some_and(|regions| regions.is_stirred(place))
+    }
+
     /// Takes in a message. False if a state topic cannot keep it.
     #[inline]
     pub(super) fn publish(&mut self, message: SharedMessage) -> bool {

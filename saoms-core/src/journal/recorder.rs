@@ -12,6 +12,8 @@ use super::fingerprint::{fingerprint, fingerprint_of_change};
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
     present: Option<u16>,
+    /// The number of the present execution, from 1.
+    execution: u64,
     /// State of the component outside all loops.
     outside: CauseChain,
     loops: Vec<LoopState>,
@@ -58,10 +60,10 @@ struct RecordRef {
     acted: bool,
 }
 
-/// The state of a loop in its present execution and in the one before.
+/// The state of a loop in the last execution in which it wrote, and in the one before.
 #[derive(Debug, Default)]
 struct LoopState {
-    /// The number of the present execution, from 1.
+    /// The number of the execution, from 1.
     execution: u64,
     chain: CauseChain,
     last: CauseChain,
@@ -95,29 +97,12 @@ impl Recorder {
         self.notices.push(Notice::Name(bounded(place), name.to_owned()));
     }
 
-    /// Sets the loop that writes from now on in this execution.
+    /// Sets the loop that writes from now on in this execution. Its state is brought to this execution when it writes:
+    /// most loops write nothing in most executions.
+    #[inline]
     pub(crate) fn enter(&mut self, place: Option<u32>, execution: u64) {
         self.present = place.map(bounded);
-        let Some(place) = self.present.map(usize::from) else { return };
-        if self.loops.len() <= place {
-            self.loops.resize_with(place + 1, LoopState::default);
-        }
-        let state = &mut self.loops[place];
-        let number = execution + 1;
-        if state.execution == number {
-            return;
-        }
-        let chain = std::mem::take(&mut state.chain);
-        std::mem::swap(&mut state.effects, &mut state.last_effects);
-        state.effects.clear();
-        // One execution may have very many: each is looked up by halves. Of equal ones the oldest comes first.
-        state.last_effects.sort_unstable();
-        // A loop that skipped an execution starts with an empty state.
-        state.last = if state.execution + 1 == number { chain } else { CauseChain::default() };
-        if state.execution + 1 != number {
-            state.last_effects.clear();
-        }
-        state.execution = number;
+        self.execution = execution + 1;
     }
 
     pub(crate) fn because(&mut self, cause: Cause) {
@@ -130,21 +115,40 @@ impl Recorder {
     #[inline]
     pub(crate) fn cause(&self) -> Cause {
         let chain = match self.present {
-            Some(place) => &self.loops[usize::from(place)].chain,
+            Some(place) if self.has_chain() => &self.loops[usize::from(place)].chain,
+            Some(_) => return Cause::default(),
             None => &self.outside,
         };
         if chain.newest == Cause::default() { chain.because } else { chain.newest }
     }
 
     fn loop_state(&mut self) -> Option<&mut LoopState> {
-        self.present.and_then(|place| self.loops.get_mut(usize::from(place)))
+        self.present.map(|place| self.state_of(place))
+    }
+
+    /// The state of a loop, brought to the present execution.
+    fn state_of(&mut self, place: u16) -> &mut LoopState {
+        let place = usize::from(place);
+        if self.loops.len() <= place {
+            self.loops.resize_with(place + 1, LoopState::default);
+        }
+        let state = &mut self.loops[place];
+        state.come_to(self.execution);
+        state
     }
 
     fn chain(&mut self) -> &mut CauseChain {
         match self.present {
-            Some(place) => &mut self.loops[usize::from(place)].chain,
+            Some(place) => &mut self.state_of(place).chain,
             None => &mut self.outside,
         }
+    }
+
+    /// True if the present loop wrote in this execution, or no loop writes.
+    fn has_chain(&self) -> bool {
+        self.present.is_none_or(|place| {
+            self.loops.get(usize::from(place)).is_some_and(|state| state.execution == self.execution)
+        })
     }
 
     /// The loop that writes at present.
@@ -238,6 +242,9 @@ impl Recorder {
     /// Marks the present decision as one with an effect, a message or a call.
     #[inline]
     pub(crate) fn acted(&mut self) {
+        if !self.has_chain() {
+            return;
+        }
         let Some(decision) = self.chain().decision.as_mut().filter(|decision| !decision.acted) else {
             return;
         };
@@ -271,6 +278,24 @@ impl Recorder {
 }
 
 impl LoopState {
+    /// Begins an execution, unless it has begun.
+    fn come_to(&mut self, execution: u64) {
+        if self.execution == execution {
+            return;
+        }
+        let chain = std::mem::take(&mut self.chain);
+        std::mem::swap(&mut self.effects, &mut self.last_effects);
+        self.effects.clear();
+        // One execution may have very many: each is looked up by halves. Of equal ones the oldest comes first.
+        self.last_effects.sort_unstable();
+        // A loop that did not write in the execution before starts with an empty state.
+        self.last = if self.execution + 1 == execution { chain } else { CauseChain::default() };
+        if self.execution + 1 != execution {
+            self.last_effects.clear();
+        }
+        self.execution = execution;
+    }
+
     /// The effect of this digest and cause in the execution before.
     fn repeated(&self, fingerprint: u64, cause: Cause) -> Option<(u64, Cause, Cause)> {
         let place = self.last_effects.partition_point(|(digest, reason, _)| (*digest, *reason) < (fingerprint, cause));

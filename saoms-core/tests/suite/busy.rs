@@ -1,9 +1,11 @@
 //! Components that call others whose code is running.
 
+use std::time::Duration;
+
 use saoms_core::schedule::Settings;
 
 use crate::fault::faults;
-use crate::fleet::{check, of, outcome, run, simulated, unindent};
+use crate::fleet::{check, of, outcome, run, simulated, start, unindent};
 
 /// Settings under which an execution of `component` at 10 ms takes this long.
 fn slow(component: &str, milliseconds: u64, limit: u64) -> Settings {
@@ -97,4 +99,31 @@ fn a_cycle_of_calls_is_a_failure_since_nobody_becomes_free() {
          Failed after 0.001 s
          - component `A` failed: component `A` is in the middle of an execution and cannot be called",
     );
+}
+
+#[test]
+fn who_is_asked_for_its_status_keeps_the_events_of_a_skipped_execution() {
+    let fleet = "A actor period=10 peer=B subscribes=TALK each=[must-ask one; hear]
+         B actor period=10
+         C actor period=10 publishes=TALK each=[0: say a; 1: say b; 2: say c]";
+    let (fleet, diary) = start(fleet, slow("B", 25, 60));
+    let fleet = fleet.unwrap();
+    let handle = fleet.handle();
+    handle.pause().unwrap();
+    let run = std::thread::spawn(move || fleet.run_to_end());
+    let between = handle.step(Some(Duration::from_millis(25))).unwrap();
+    while handle.progress().time != between {
+        std::thread::yield_now();
+    }
+    handle.status();
+    handle.resume().unwrap();
+    run.join().unwrap();
+    let heard = "[0.000 s] paused
+         [0.000 s] A: hears []
+         [0.010 s] A: hears [a]
+         [0.020 s] A: component `B`, which it calls, is busy: tries again in each period
+         [0.025 s] resumed
+         [0.040 s] A: hears [b]
+         [0.050 s] A: hears [c]";
+    assert_eq!(diary.lines().trim_end(), unindent(heard).trim_end());
 }

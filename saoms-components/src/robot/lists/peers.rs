@@ -10,6 +10,10 @@ pub struct Peers {
     /// Newest position of each robot, by robot.
     newest: Vec<Newest>,
     period: u64,
+    /// The period in which a position arrived last.
+    heard: u64,
+    /// Number of changes of any position.
+    changes: u64,
 }
 
 /// The newest position of a robot.
@@ -26,7 +30,7 @@ struct Newest {
 impl Peers {
     /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Peers {
-        Peers { number, newest: Vec::new(), period: 0 }
+        Peers { number, newest: Vec::new(), period: 0, heard: 0, changes: 0 }
     }
 
     /// Handles the positions that arrived for this period, without the robot's own.
@@ -34,6 +38,8 @@ impl Peers {
         self.period += 1;
         for (position, sent) in positions.filter(|(position, _)| position.robot != self.number) {
             let newest = Newest { position: position.clone(), sent, period: self.period, stopped: false };
+            self.heard = self.period;
+            self.changes += 1;
             match self.place(position.robot) {
                 Ok(place) => self.newest[place] = newest,
                 Err(place) => self.newest.insert(place, newest),
@@ -49,6 +55,7 @@ impl Peers {
         if *sent > since || std::mem::replace(stopped, true) {
             return false;
         }
+        self.changes += 1;
         position.priority = IMMOVABLE;
         if let Some(block) = block {
             (position.block, position.next, position.wanted) = (block, block, block);
@@ -64,13 +71,21 @@ impl Peers {
     pub(in crate::robot) fn forget(&mut self, robot: u32) {
         if let Ok(place) = self.place(robot) {
             self.newest.remove(place);
+            self.changes += 1;
         }
     }
 
     /// Positions that arrived in this period.
     pub fn heard(&self) -> impl Iterator<Item = &Position> + Clone {
         let period = self.period;
-        self.newest.iter().filter(move |newest| newest.period == period).map(|newest| &newest.position)
+        // Most of the time nobody moved.
+        let newest = if self.heard == period { self.newest.as_slice() } else { &[] };
+        newest.iter().filter(move |newest| newest.period == period).map(|newest| &newest.position)
+    }
+
+    /// Number of changes of any position.
+    pub(in crate::robot) fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// All positions, by number of the robot.

@@ -28,6 +28,8 @@ const SHORT_PATIENCE: u32 = 3;
 #[derive(Debug, Default)]
 pub(crate) struct Traffic {
     near: Vec<Position>,
+    /// Where it looked last, at which number of changes of the positions.
+    looked: Option<(Block, u64)>,
     wanted: Option<Block>,
     /// The same as the entry of the knowledge shows it.
     shown: Option<Block>,
@@ -94,6 +96,9 @@ impl Availability {
 impl Traffic {
     /// Collects the robots near this block; others do not matter.
     pub(in crate::robot) fn look(&mut self, peers: &Peers, at: Block) {
+        if self.looked.replace((at, peers.changes())) == Some((at, peers.changes())) {
+            return;
+        }
         self.near.clear();
         self.near.extend(peers.all().filter(|peer| peer.block.distance(at) <= 3).cloned());
     }

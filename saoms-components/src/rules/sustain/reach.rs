@@ -146,14 +146,14 @@ impl<'m> Ways<'m> {
         Some(!is_connected)
     }
 
-    /// Number of moves. The outer `None` means that the budget is used up, the inner one that no way leads there.
+    /// Number of moves from a start. The outer `None` means that the budget is used up, the inner one that no way leads there.
     pub(super) fn moves(&mut self, from: Block, to: Block) -> Option<Option<u32>> {
+        if self.map.is_open() {
+            return Some((self.map.contains(from) && self.map.contains(to)).then(|| from.distance(to)));
+        }
         let (Ok(start), true) = (self.starts.binary_search(&from), self.map.is_free(to)) else {
             return Some(None);
         };
-        if self.map.is_open() {
-            return Some(Some(from.distance(to)));
-        }
         if !self.known.contains_key(&to) {
             self.left = self.left.checked_sub(self.map.size())?;
             if (self.known.len() + 1) * self.starts.len() > KEPT {

@@ -198,6 +198,7 @@ impl Body {
             bus.unpublish(topic);
         }
         self.give_unread(bus);
+        self.part.collection.reset();
         self.part.held = false;
         Outgoing { instance: Some(instance), stops }
     }
@@ -214,6 +215,7 @@ impl Body {
         part.outbox.clear();
         part.to_keep.clear();
         part.vote = None;
+        part.collection.reset();
         part.held = false;
         let Endpoints { spec, publishers, subscriptions, recorder } = predecessor.endpoints;
         (part.spec, part.publishers) = (spec, publishers);
@@ -234,6 +236,7 @@ impl Endpoints {
         part.lasting.forget_state();
         part.chance = successor.chance.clone();
         part.held = true;
+        part.collection.reset();
         Endpoints {
             spec: std::mem::replace(&mut part.spec, Arc::clone(&successor.spec)),
             publishers: std::mem::replace(&mut part.publishers, std::mem::take(&mut successor.publishers)),

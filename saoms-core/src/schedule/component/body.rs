@@ -5,6 +5,7 @@ use std::time::Duration;
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
 use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Time};
 
+use super::collection::Collection;
 use super::host::ComponentHost;
 use super::lasting::Lasting;
 use super::spent::Spent;
@@ -47,6 +48,8 @@ pub(crate) struct Part {
     /// Schemas of the topics on which messages were sent as bytes.
     pub(crate) schemas: Vec<(TopicId, Arc<Schema>)>,
     pub(crate) subscriptions: Vec<TopicReader>,
+    /// The last collection of all subscriptions.
+    pub(crate) collection: Collection,
     /// Messages that left the regions of subscriptions, for the present execution or reaction.
     pub(crate) departed: Vec<Vec<Departed>>,
     pub(crate) has_departed: bool,
@@ -153,6 +156,7 @@ impl Body {
             publishers: Vec::new(),
             schemas: Vec::new(),
             subscriptions: Vec::new(),
+            collection: Collection::default(),
             departed: Vec::new(),
             has_departed: false,
             kept: Vec::new(),
@@ -214,7 +218,7 @@ impl Body {
             }
             Job::React => {
                 let react = |instance: &mut dyn DynComponent, context: &mut Context<'_>| instance.react(context);
-                call(&mut self.instance, &mut self.part, &self.reactions, shared, react).unwrap_or_else(Err)
+                call(&mut self.instance, &mut self.part, (&self.reactions, u64::MAX), shared, react).unwrap_or_else(Err)
             }
             Job::Ask => self.call(shared, |instance, _| instance.waits_for()).unwrap_or_else(Err).map(|waits_for| {
                 self.part.waits_for = waits_for;
@@ -245,8 +249,10 @@ impl Body {
             result = self.save_execution();
         }
         if result.is_ok() || !self.part.lasting.hears_again() {
-            for inbox in if job == Job::React { &mut self.reactions } else { &mut self.inboxes } {
-                inbox.clear();
+            match job {
+                Job::Execute => self.part.collection.filled.clear(&mut self.inboxes),
+                Job::React => self.reactions.iter_mut().for_each(Vec::clear),
+                Job::Start | Job::Ask | Job::Describe | Job::Order | Job::Shutdown => {}
             }
         }
         if result.is_err() {
@@ -322,7 +328,8 @@ impl Body {
         shared: &Arc<Shared>,
         code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
     ) -> Result<T, Failure> {
-        call(&mut self.instance, &mut self.part, &self.inboxes, shared, code)
+        let filled = self.part.collection.filled.bits();
+        call(&mut self.instance, &mut self.part, (&self.inboxes, filled), shared, code)
     }
 
     /// Makes room for the messages of each subscription.
@@ -362,7 +369,7 @@ impl Body {
 fn call<T>(
     instance: &mut Option<Box<dyn DynComponent>>,
     part: &mut Part,
-    inboxes: &[Vec<SharedMessage>],
+    (inboxes, filled): (&[Vec<SharedMessage>], u64),
     shared: &Arc<Shared>,
     code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
 ) -> Result<T, Failure> {
@@ -371,7 +378,7 @@ fn call<T>(
     };
     let has_departed = part.has_departed;
     let mut host = ComponentHost { shared, part };
-    let mut context = Context::new(&mut host, inboxes);
+    let mut context = Context::new(&mut host, inboxes).with_filled(filled);
     if has_departed {
         context = context.with_departed();
     }

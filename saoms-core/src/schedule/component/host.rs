@@ -303,7 +303,12 @@ impl Host for ComponentHost<'_> {
             )));
         }
         let reader = &mut self.part.subscriptions[subscription as usize];
-        self.shared.lock().bus.set_region(reader, region, queue);
+        let mut engine = self.shared.lock();
+        let was_in_region = engine.bus.has_region(reader);
+        engine.bus.set_region(reader, region, queue);
+        if !(was_in_region && region.is_some()) {
+            self.part.collection.published = 0;
+        }
         Ok(())
     }
 

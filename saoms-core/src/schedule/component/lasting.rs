@@ -164,7 +164,9 @@ impl Body {
         let Body { inboxes, reactions, part: Part { subscriptions, lasting, .. }, .. } = self;
         for (inboxes, unread) in [(inboxes, &mut lasting.unread), (reactions, &mut lasting.unread_reactions)] {
             for (subscription, inbox) in subscriptions.iter_mut().zip(inboxes) {
-                bus.put_back(subscription, inbox);
+                if !inbox.is_empty() || bus.has_region(subscription) {
+                    bus.put_back(subscription, inbox);
+                }
                 if !inbox.is_empty() {
                     unread.push((bus.topic_of(subscription), std::mem::take(inbox)));
                 }

@@ -2,6 +2,7 @@
 
 pub(super) mod body;
 mod call;
+pub(crate) mod collection;
 mod declared;
 mod host;
 pub(super) mod lasting;

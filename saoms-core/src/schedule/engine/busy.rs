@@ -36,10 +36,15 @@ impl Engine {
             self.emit(now, index, Occurrence::Busy { provider: Arc::from(provider) });
         }
         self.step(now, index, TraceStep::Skipped);
+        body.part.collection.reset();
         if job == Job::Execute {
             self.deliver(&mut body.part, now);
             let mut back = 0;
             for (subscription, inbox) in body.part.subscriptions.iter_mut().zip(&mut body.inboxes) {
+                if inbox.is_empty() && !self.bus.has_region(subscription) {
+                    // It had no news, and was not looked at.
+                    continue;
+                }
                 back += self.bus.put_back(subscription, inbox);
             }
             self.slots[index as usize].statistics.received -= back;

@@ -63,6 +63,9 @@ impl Engine {
         self.out += 1;
         slot.out_since = now;
         body.part.now = now;
+        if matches!(job, Job::Start | Job::Shutdown | Job::Order) {
+            body.part.collection.reset();
+        }
         if !self.real && self.phase == RunPhase::Running && !matches!(job, Job::Ask | Job::Describe | Job::Order) {
             self.begun = now;
         }
@@ -130,12 +133,18 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         let inboxes = if reacts { &mut body.reactions } else { &mut body.inboxes };
         let mut lost = None;
+        let collection = &mut body.part.collection;
+        let since = if reacts { None } else { collection.since(&self.bus) };
+        let mut published = self.bus.published();
         for (place, (subscription, inbox)) in body.part.subscriptions.iter_mut().zip(&mut *inboxes).enumerate() {
-            if self.bus.is_trigger(subscription) != reacts {
+            if since.is_some_and(|since| collection.is_quiet(place, &self.bus, since))
+                || self.bus.is_trigger(subscription) != reacts
+            {
                 continue;
             }
             if !inbox.is_empty() {
                 // Events of an execution that was skipped: what came since waits in the queue.
+                published = 0;
                 continue;
             }
             let missing = if self.bus.has_region(subscription) {
@@ -152,11 +161,22 @@ impl Engine {
             if self.bus.is_addressed(subscription) {
                 inbox.retain(|message| message.to().is_none_or(|to| to == index));
             }
-            slot.statistics.received += inbox.len() as u64;
+            if !inbox.is_empty() {
+                slot.statistics.received += inbox.len() as u64;
+                if !reacts {
+                    collection.filled.note(place);
+                }
+            }
             if missing > 0 {
                 let (topic, _, before) = lost.unwrap_or((self.bus.topic_of(subscription), place, 0));
                 lost = Some((topic, place, before + missing));
             }
+        }
+        if !reacts {
+            if since.is_none() {
+                collection.watch(&body.part.subscriptions, &self.bus);
+            }
+            collection.published = published;
         }
         match lost {
             None => slot.dropping = false,

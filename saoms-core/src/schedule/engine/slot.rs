@@ -17,35 +17,34 @@ use saoms_lang::assembly::{ComponentSpec, Loss, Overrun};
 /// A time that never comes.
 pub(crate) const NEVER: u64 = u64::MAX;
 
-/// State of one component in the engine.
+/// State of one component in the engine. What each execution looks at stands first, in a few lines of the processor's
+/// cache: with thousands of components each of these lines comes from memory.
+#[repr(C, align(64))]
 pub(crate) struct Slot {
     /// Body of the component; absent while its code runs.
     pub(crate) body: Option<Box<Body>>,
-    pub(crate) state: SlotState,
-    /// Specification of the component, the same as in its body.
-    pub(crate) spec: Arc<ComponentSpec>,
-    /// True if its instance is part of a change that is not committed: it is not executed.
-    pub(crate) held: bool,
-    /// True if it has ever joined the fleet.
-    pub(crate) joined: bool,
     /// The time of its entry in the queue: an entry with another time does not hold any more.
     pub(crate) entry: u64,
     /// Due time of the next execution.
     pub(crate) due: u64,
-    /// Due time of the next reaction to messages, and that of the last one.
+    /// Due time of the next reaction to messages.
     pub(crate) react_due: u64,
-    pub(crate) last_react: Option<u64>,
-    /// Time of the first message that the next reaction is for, and of that of the present one.
-    pub(crate) triggered: u64,
-    pub(crate) reacts_since: u64,
-    /// Due time of the last execution.
-    pub(crate) last_due: Option<u64>,
     /// Time at which it is unscheduled automatically.
     pub(crate) until: u64,
     /// Executions of the present instance.
     pub(crate) execution: u64,
+    /// Time since which its body is out.
+    pub(crate) out_since: u64,
+    /// In virtual time, the end of an execution that a fault makes longer.
+    pub(crate) busy_until: u64,
+    /// Due time of the last execution.
+    pub(crate) last_due: Option<u64>,
     /// Request that came while its code ran.
     pub(crate) pending: PendingRequest,
+    pub(crate) isolation: Isolation,
+    pub(crate) state: SlotState,
+    /// True if its instance is part of a change that is not committed: it is not executed.
+    pub(crate) held: bool,
     /// True if it became due while it served a call.
     pub(crate) waiting: bool,
     /// True if it is queued for the worker threads.
@@ -54,14 +53,30 @@ pub(crate) struct Slot {
     pub(crate) dropping: bool,
     /// True if its last execution was skipped, because a component that it called was busy.
     pub(crate) skipping: bool,
-    /// Time since which its body is out.
-    pub(crate) out_since: u64,
-    /// The same of the last code that did not return in time, so that its hardware was stopped.
-    pub(crate) hangs_since: u64,
-    /// In virtual time, the end of an execution that a fault makes longer.
-    pub(crate) busy_until: u64,
-    pub(crate) isolation: Isolation,
+    /// True from an emergency stop to its release; `emergency` says it to its code.
+    stopped: bool,
+    /// True if it hears of an emergency stop by a property, and goes on.
+    pub(crate) hears_stops: bool,
+    /// True if its hardware is stopped once more when its code returns.
+    pub(crate) stops_again: bool,
+    /// True if it has lost what it kept, since the disk failed: its messages may depend on that, and are not sent.
+    pub(crate) is_cut_off: bool,
     pub(crate) policy: TaskPolicy,
+    pub(crate) statistics: Statistics,
+    /// Executions that kept something which is not committed.
+    pub(crate) uncommitted: VecDeque<Uncommitted>,
+    pub(crate) journal: Ring,
+    /// Specification of the component, the same as in its body.
+    pub(crate) spec: Arc<ComponentSpec>,
+    /// True if it has ever joined the fleet.
+    pub(crate) joined: bool,
+    /// Due time of the last reaction.
+    pub(crate) last_react: Option<u64>,
+    /// Time of the first message that the next reaction is for, and of that of the present one.
+    pub(crate) triggered: u64,
+    pub(crate) reacts_since: u64,
+    /// Time since which code ran that did not return in time, so that its hardware was stopped.
+    pub(crate) hangs_since: u64,
     /// True if it sees work left; `None` if it did not vote.
     pub(crate) sees_work: Option<bool>,
     /// True if it said that work was given up.
@@ -74,23 +89,11 @@ pub(crate) struct Slot {
     pub(crate) asked_to_wait: bool,
     /// Its last answer.
     pub(crate) described: Option<Arc<Description>>,
-    pub(crate) statistics: Statistics,
-    /// Executions that kept something which is not committed.
-    pub(crate) uncommitted: VecDeque<Uncommitted>,
-    /// True if it has lost what it kept, since the disk failed: its messages may depend on that, and are not sent.
-    pub(crate) is_cut_off: bool,
-    pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
     pub(crate) overrun_failure: Option<String>,
     pub(crate) name: Arc<str>,
     pub(crate) cancelled: Arc<AtomicBool>,
-    /// True from an emergency stop to its release; the second one is for its code.
-    stopped: bool,
     emergency: Arc<AtomicBool>,
-    /// True if it hears of an emergency stop by a property, and goes on.
-    pub(crate) hears_stops: bool,
-    /// True if its hardware is stopped once more when its code returns.
-    pub(crate) stops_again: bool,
     /// Number of instances so far.
     pub(crate) instances: u64,
     pub(crate) restarts: u32,
@@ -165,11 +168,12 @@ impl Isolation {
 
 /// Task settings of the composite in the engine's units.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(crate) struct TaskPolicy {
+    pub(crate) period: u64,
     pub(crate) periodic: bool,
     pub(crate) on_startup: bool,
     pub(crate) interrupt: bool,
-    pub(crate) period: u64,
     pub(crate) delay: u64,
     /// Least time from one reaction to the next.
     pub(crate) minimum: u64,
@@ -215,10 +219,13 @@ impl TaskPolicy {
 
 /// Statistics of a component for the report.
 #[derive(Debug, Default)]
+#[repr(C)]
 pub(crate) struct Statistics {
     pub(crate) executions: u64,
-    pub(crate) reactions: u64,
     pub(crate) missed: u64,
+    pub(crate) received: u64,
+    pub(crate) sent: u64,
+    pub(crate) reactions: u64,
     pub(crate) deadline_misses: u64,
     pub(crate) slow: u64,
     pub(crate) busy: u64,
@@ -227,8 +234,6 @@ pub(crate) struct Statistics {
     pub(crate) dropped: u64,
     /// Messages of the component that a state topic could not keep.
     pub(crate) unkept: u64,
-    pub(crate) sent: u64,
-    pub(crate) received: u64,
     pub(crate) late: Lateness,
 }
 
