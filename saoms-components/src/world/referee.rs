@@ -59,6 +59,16 @@ pub(super) struct Slowness {
     pub(super) until: Option<Time>,
 }
 
+impl Slowness {
+    /// The time of an action that begins now: what is left of it when the slowness ends takes its usual time.
+    fn lasting(&self, usual: Duration, period: Duration, now: Time) -> Duration {
+        let slowed = usual.max(period).as_nanos() as f64 * self.factor;
+        let left = self.until.map_or(f64::INFINITY, |until| until.since(now).as_nanos() as f64);
+        let nanos = if slowed <= left { slowed } else { left + (1.0 - left / slowed) * usual.as_nanos() as f64 };
+        Duration::from_nanos(nanos.round() as u64)
+    }
+}
+
 /// A robot that entered a block where another one was.
 #[derive(Clone, Copy, Debug, PartialEq, Field)]
 pub(super) struct Meeting {
@@ -186,10 +196,7 @@ impl Referee {
                 usual.max(Duration::from_nanos(1))
             }
             None => usual,
-            Some(slow) => {
-                let nanos = usual.max(body.period).as_nanos() as f64 * slow.factor;
-                Duration::from_nanos(nanos.round() as u64)
-            }
+            Some(slow) => slow.lasting(usual, body.period, now),
         }
     }
 

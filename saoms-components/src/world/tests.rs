@@ -3,7 +3,7 @@ use std::time::Duration;
 use saoms_api::Time;
 
 use super::luggage::{HandlingOutcome, Stock};
-use super::referee::Referee;
+use super::referee::{Referee, Slowness};
 use crate::grid::{Block, Map};
 use crate::hardware::Progress;
 use crate::messages::Collision;
@@ -191,4 +191,23 @@ fn luggage_that_is_given_up_is_no_open_work() {
     assert_eq!(stock.collect(7, 1, from, |_| false), Ok(HandlingOutcome::Handled), "it can be brought all the same");
     assert_eq!(stock.deposit(7, 1, to), Ok(HandlingOutcome::Delivered { given_up: true }));
     assert!(stock.is_settled() && !stock.give_up(7));
+}
+
+#[test]
+fn an_action_goes_on_at_its_usual_speed_when_slowness_ends() {
+    let mut referee = referee(&[block(0, 0)]);
+    referee.note_period(1, 100_000);
+    let seconds = Duration::from_secs_f64;
+    let slow =
+        |factor: f64, until: Option<f64>| Slowness { factor, until: until.map(|end| Time::START + seconds(end)) };
+    for (slowness, usual, expected) in [
+        (slow(3.0, Some(5.0)), 1.0, 3.0),
+        (slow(10.0, Some(5.0)), 1.0, 5.5),
+        (slow(1000.0, Some(5.0)), 1.0, 5.995),
+        (slow(1000.0, Some(5.0)), 0.0, 5.0),
+        (slow(1000.0, None), 1.0, 1000.0),
+    ] {
+        referee.slow_down(1, slowness);
+        assert_eq!(referee.lasting(1, seconds(usual), Time::START), seconds(expected), "{slowness:?}");
+    }
 }

@@ -77,6 +77,17 @@ fn a_slow_robot_takes_longer_and_brings_its_luggage() {
 }
 
 #[test]
+fn a_move_goes_on_at_its_usual_speed_when_the_robot_is_slow_no_more() {
+    let usual = run("at 1s luggage (3,1) to (3,9)", PHYSICAL);
+    let short = run(
+        "at 1s luggage (3,1) to (3,9); at 1500ms slow robot=1 factor=1000 lasting=5s; at 1500ms slow robot=2 factor=1000 lasting=5s",
+        PHYSICAL,
+    );
+    assert_delivered(&short);
+    assert!(short.time_s <= usual.time_s + 6.0, "{} {}", short.time_s, usual.time_s);
+}
+
+#[test]
 fn a_slow_robot_returns_to_its_charger_in_time() {
     // Without its measured pace it would set out for luggage that is too far.
     let scenario = "from 1s every 8s 20 times luggage (1,0)..(10,10) to (1,0)..(10,10)
