@@ -29,6 +29,10 @@ struct Robot {
     /// In microseconds.
     period: u64,
     job: Option<(u32, Time)>,
+    /// When its battery gained last: it stands at a charger.
+    charged: Time,
+    /// True if it said last that it works.
+    is_active: bool,
     /// True if it is out of service, so that nothing is expected of it.
     is_out: bool,
     is_empty: bool,
@@ -78,8 +82,12 @@ impl Robots {
         if state.active {
             robot.is_out = false;
         }
-        robot.supply.hear(state, (finder.at, robot.moved), tide, &self.outages);
-        let is_empty = state.active && state.is_out_of_battery();
+        if robot.supply.hear(state, (finder.at, robot.moved), tide, &self.outages) {
+            (robot.charged, robot.stands_still) = (finder.at, false);
+        }
+        // One whose battery is empty may say in the same breath that it works no more.
+        let was_active = std::mem::replace(&mut robot.is_active, state.active);
+        let is_empty = (state.active || was_active) && state.is_out_of_battery();
         // Under a fault that has lasted for long, it could not go to its charger.
         let is_fault = tide.calm(Time::START, finder.at).is_none() || robot.supply.is_excused();
         if is_empty && !robot.is_empty && !is_fault {
@@ -137,9 +145,16 @@ impl Robots {
 
     /// Looks for robots that stand still although they have a job.
     pub(super) fn look(&mut self, tide: &Tide, finder: &mut Finder<'_>) {
+        // Who waits beside a robot that charges goes on once that is charged.
+        let charged: Vec<(Block, Time)> =
+            self.all.values().filter_map(|robot| Some((robot.block?, robot.charged))).collect();
+        let charged_beside = |block: Option<Block>| {
+            let beside = charged.iter().filter(|(other, _)| block.is_some_and(|block| block.distance(*other) <= 1));
+            beside.map(|(_, at)| *at).max().unwrap_or_default()
+        };
         for (number, robot) in &mut self.all {
             let Some((luggage, since)) = robot.job.filter(|_| !robot.is_out && !robot.stands_still) else { continue };
-            let stood = tide.calm(since.max(robot.moved), finder.at);
+            let stood = tide.calm(since.max(robot.moved).max(charged_beside(robot.block)), finder.at);
             if let Some(time) = stood.filter(|time| *time > bound(robot.period)) {
                 robot.stands_still = true;
                 let block = robot.block.map(|block| format!(" at {block}")).unwrap_or_default();

@@ -34,18 +34,26 @@ impl Supply {
         });
     }
 
-    /// Notes what the robot says. `moved` is when it entered its block.
-    pub(super) fn hear(&mut self, state: &RobotList, (at, moved): (Time, Time), tide: &Tide, outages: &Outages) {
+    /// Notes what the robot says. `moved` is when it entered its block. True if its battery has gained.
+    pub(super) fn hear(
+        &mut self,
+        state: &RobotList,
+        (at, moved): (Time, Time),
+        tide: &Tide,
+        outages: &Outages,
+    ) -> bool {
+        let gains = state.battery > self.level;
         if let Some(until) = outages.of(state.charger, at) {
             self.strain(until);
         }
-        if state.battery > self.level {
+        if gains {
             self.kept = 0.0;
             self.strained = self.strained.filter(|until| until.is_none_or(|until| at < until));
         } else if moved <= self.said && tide.calm(Time::START, at).is_none() {
             self.kept += self.level - state.battery;
         }
         (self.level, self.said) = (state.battery, at);
+        gains
     }
 
     /// True if faults are why the battery is empty.

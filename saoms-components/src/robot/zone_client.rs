@@ -38,6 +38,8 @@ pub(crate) struct ZoneClient {
     goal: Option<Block>,
     /// For each zone, the first request with that goal.
     aimed: Vec<Aimed>,
+    /// True if it had no goal before this one: what is granted to it for that time is to make way for others.
+    rested: bool,
     /// Block to which a loop ordered the robot, and that is not granted yet.
     pub(super) asked: Option<Block>,
     /// The block that another robot has to leave first, and that robot.
@@ -106,6 +108,7 @@ impl ZoneClient {
             silent: 0,
             goal: None,
             aimed: Vec::new(),
+            rested: false,
             asked: None,
             in_the_way: None,
             latency: Latency::default(),
@@ -162,8 +165,17 @@ impl ZoneClient {
     /// Takes in what zones say. True if there are grants for an earlier goal among them, whose blocks may lead
     /// elsewhere.
     pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) -> bool {
-        let ZoneClient { passage: Some(passage), territories, grants, validator, in_the_way, latency, aimed, .. } =
-            self
+        let ZoneClient {
+            passage: Some(passage),
+            territories,
+            grants,
+            validator,
+            in_the_way,
+            latency,
+            aimed,
+            rested,
+            ..
+        } = self
         else {
             return false;
         };
@@ -181,7 +193,7 @@ impl ZoneClient {
                 let waits = grant.waits_for != 0;
                 *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
                 latency.hears(grant.zone, grant.heard);
-                is_late |= aimed.iter().any(|one| one.zone == grant.zone && one.number > grant.heard);
+                is_late |= !*rested && aimed.iter().any(|one| one.zone == grant.zone && one.number > grant.heard);
             }
         }
         is_late
@@ -235,6 +247,7 @@ impl ZoneClient {
         let before = std::mem::replace(&mut self.goal, goal);
         if goal != before {
             self.aimed.clear();
+            self.rested = before.is_none();
         }
         if before.is_some() && goal != before {
             self.turn(begun, way);

@@ -4,6 +4,7 @@ mod assignment;
 mod battery;
 mod charging;
 mod composites;
+mod dead_ends;
 mod endings;
 mod environment;
 mod expand;

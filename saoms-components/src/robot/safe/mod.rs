@@ -12,6 +12,7 @@
 mod battery;
 mod collision;
 mod critical;
+mod dead_end;
 mod energy;
 mod event_luggage;
 mod gain;

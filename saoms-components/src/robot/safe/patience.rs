@@ -12,7 +12,7 @@ const LEAST_TRY: u32 = 500;
 /// Maximum time for which a robot may be idle while there is work for it, in moves of a block.
 const LONGEST_IDLE: u32 = 1000;
 
-/// Number of executions that a robot has been on its job.
+/// Number of executions that a robot has been on its job, and has not charged.
 #[derive(Debug, Default, Clone, Field)]
 pub(super) struct Attempt {
     luggage: Option<u32>,

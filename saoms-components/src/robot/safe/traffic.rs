@@ -8,7 +8,7 @@
 //! Wanting a held block asks its holder to make way. A holder of lower priority does, with the priority of the asking
 //! robot, and so on along a line of robots. This is the priority inheritance of PIBT (Okumura, Machida, Défago, Tamura,
 //! "Priority Inheritance with Backtracking for Iterative Multi-agent Path Finding", 2019), without its common time
-//! steps. A robot without progress tries another way.
+//! steps. A robot without progress tries another way. In dead ends who goes out goes first: see `dead_end`.
 
 use std::cmp::Reverse;
 
@@ -17,6 +17,8 @@ use saoms_api::{Chance, Field};
 use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::{IMMOVABLE, Position, Priority};
 use crate::robot::{Peers, Routes};
+
+use super::dead_end::{Leaving, way_out};
 
 /// Number of executions of waiting after which a robot tries another way.
 const PATIENCE: u32 = 8;
@@ -38,6 +40,8 @@ pub(crate) struct Traffic {
     waited: u32,
     /// Block that it does not try again while the same robot holds it.
     avoided: Option<(Block, u32)>,
+    /// The dead end that it leaves, or has left, to another robot.
+    leaving: Option<Leaving>,
 }
 
 /// What outlives a failure of the robot; the robots around it are heard again.
@@ -48,6 +52,7 @@ pub(crate) struct TrafficMemory {
     previous: Option<Block>,
     waited: u32,
     avoided: Option<Avoided>,
+    leaving: Option<Leaving>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -109,14 +114,15 @@ impl Traffic {
     }
 
     pub(in crate::robot) fn memory(&self) -> TrafficMemory {
-        let Traffic { wanted, shown, previous, waited, avoided, .. } = *self;
+        let Traffic { wanted, shown, previous, waited, avoided, leaving, .. } = *self;
         let avoided = avoided.map(|(block, holder)| Avoided { block, holder });
-        TrafficMemory { wanted, shown, previous, waited, avoided }
+        TrafficMemory { wanted, shown, previous, waited, avoided, leaving }
     }
 
     pub(in crate::robot) fn restore(&mut self, memory: TrafficMemory) {
-        let TrafficMemory { wanted, shown, previous, waited, avoided } = memory;
+        let TrafficMemory { wanted, shown, previous, waited, avoided, leaving } = memory;
         (self.wanted, self.shown, self.previous, self.waited) = (wanted, shown, previous, waited);
+        self.leaving = leaving;
         self.avoided = avoided.map(|avoided| (avoided.block, avoided.holder));
     }
 
@@ -170,14 +176,17 @@ impl Traffic {
 
     /// The robot's own priority, or the priority of the robot for which it has to make way.
     pub(super) fn inherited(&self, own: Priority, at: Block) -> Priority {
-        let asking = self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at));
-        asking.map(|peer| peer.priority).max().map_or(own, |asked| asked.max(own))
+        self.asker(at).map_or(own, |asker| asker.priority.max(own))
     }
 
     /// Chooses the block that the robot wants from now on.
     pub(super) fn choose(&mut self, claim: &Claim, own: Priority, routes: &Routes, chance: &mut Chance) -> Block {
         let Claim { at, goal, .. } = *claim;
-        let makes_way = claim.priority > own;
+        self.leaving = self.leaving.and_then(|leaving| self.still_leaving(leaving));
+        let out = if self.is_alone(at) { None } else { way_out(at, routes) };
+        let coming_out = self.coming_out(at, routes);
+        let leaves = self.leaving.is_some() && out.is_some();
+        let makes_way = claim.priority > own || coming_out.is_some() || leaves;
         let on_the_way = goal.is_some_and(|goal| goal != at);
         if !makes_way && !on_the_way {
             self.stay(at);
@@ -197,14 +206,20 @@ impl Traffic {
             .neighbours()
             .into_iter()
             .filter(|block| routes.is_free(*block) && self.avoided.is_none_or(|(avoided, _)| avoided != *block))
+            .filter(|block| coming_out != Some(*block) && self.leaving.is_none_or(|leaving| leaving.block != *block))
             .filter_map(|block| {
-                let standing = self.availability(block, claim)?;
+                let standing = self.availability(block, claim, out, routes)?;
                 let cost = goal.map_or(0, |goal| routes.to_goal(block, goal));
                 let goes_back = Some(block) == self.previous;
                 let aside = impatient && standing == Availability::Free;
                 if !makes_way
                     && (cost == UNREACHABLE || (cost >= here && !aside) || (goes_back && self.avoided.is_some()))
                 {
+                    return None;
+                }
+                let keeps_out = self.leaving.is_some() || (makes_way && (goal.is_none() || cost >= here));
+                if keeps_out && way_out(block, routes) == Some(at) {
+                    // The other robot would follow, and neither could leave.
                     return None;
                 }
                 let rank = if makes_way {
@@ -223,7 +238,38 @@ impl Traffic {
             .min_by_key(|(score, _)| *score);
         let wanted = best.map_or(at, |(_, block)| block);
         self.wanted = Some(wanted);
+        if claim.priority > own
+            && !on_the_way
+            && out == Some(wanted)
+            && let Some(asker) = self.asker(at)
+        {
+            self.leaving = Some(Leaving::new(at, asker.robot, claim.tempo));
+        }
         wanted
+    }
+
+    /// True if no other robot is within two blocks.
+    fn is_alone(&self, at: Block) -> bool {
+        self.near.iter().all(|peer| peer.block.distance(at) > 2 && peer.next.distance(at) > 2)
+    }
+
+    /// The block beside this one from which a robot comes out of a dead end.
+    fn coming_out(&self, at: Block, routes: &Routes) -> Option<Block> {
+        let comes = |peer: &&Position| peer.wanted == at && peer.block == peer.next && peer.priority != IMMOVABLE;
+        let comes = self.near.iter().filter(comes).map(|peer| peer.block);
+        comes.filter(|block| *block != at).find(|block| way_out(*block, routes) == Some(at))
+    }
+
+    /// The dead end that the robot leaves to another one, until that is in or has gone elsewhere.
+    fn still_leaving(&self, leaving: Leaving) -> Option<Leaving> {
+        let asker = self.near.iter().find(|peer| peer.robot == leaving.asker)?;
+        let left = leaving.left.checked_sub(1)?;
+        (asker.block != leaving.block).then_some(Leaving { left, ..leaving })
+    }
+
+    /// The robot with the highest priority that asks for this block.
+    fn asker(&self, at: Block) -> Option<&Position> {
+        self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at)).max_by_key(|peer| peer.priority)
     }
 
     /// After waiting in vain, avoids the same block while the same robot holds it, unless there was no other way.
@@ -249,8 +295,7 @@ impl Traffic {
 
     /// The block on the other side of the robot with the highest priority that asks for this one.
     fn ahead_of_asker(&self, at: Block) -> Option<Block> {
-        let asking = self.near.iter().filter(|peer| peer.wanted == at && !peer.holds(at));
-        let asker = asking.max_by_key(|peer| peer.priority)?.next;
+        let asker = self.asker(at)?.next;
         Some(Block::new(2 * at.x - asker.x, 2 * at.y - asker.y))
     }
 
@@ -259,10 +304,10 @@ impl Traffic {
         self.near.iter().find(|peer| peer.holds(block)).map(|peer| peer.robot)
     }
 
-    /// Availability of a block; `None` if the robot cannot have it.
-    fn availability(&self, block: Block, claim: &Claim) -> Option<Availability> {
-        let right = |priority: Priority, robot: u32| (priority, Reverse(robot));
-        let mine = right(claim.priority, claim.robot);
+    /// Availability of a block; `None` if the robot cannot have it. `out` is the way out of the dead end that it is in.
+    fn availability(&self, block: Block, claim: &Claim, out: Option<Block>, routes: &Routes) -> Option<Availability> {
+        let right = |goes_out: bool, priority: Priority, robot: u32| (goes_out, priority, Reverse(robot));
+        let mine = right(out == Some(block), claim.priority, claim.robot);
         let mut standing = Availability::Free;
         for peer in &self.near {
             if peer.holds(block) {
@@ -270,13 +315,18 @@ impl Traffic {
                 let leaves = peer.next != block || (peer.wanted != block && !comes_here);
                 standing = if leaves && peer.priority != IMMOVABLE {
                     Availability::Leaving
-                } else if peer.priority < claim.priority {
+                } else if peer.priority < claim.priority
+                    || (out == Some(block) && comes_here && peer.priority != IMMOVABLE)
+                {
                     Availability::Yielding
                 } else {
                     return None;
                 };
-            } else if peer.wanted == block && right(peer.priority, peer.robot) > mine {
-                return None;
+            } else if peer.wanted == block {
+                let goes_out = way_out(peer.next, routes) == Some(block);
+                if right(goes_out, peer.priority, peer.robot) > mine {
+                    return None;
+                }
             }
         }
         Some(standing)

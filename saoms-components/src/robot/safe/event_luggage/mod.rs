@@ -32,7 +32,7 @@ const PATIENCE: u64 = 4;
     knowledge = RobotKnowledge,
     senses(
         "block", "battery", "asleep", "requests", "lasts", "mustCharge", "relieved", "offersHelp", "moving",
-        "handling", "loaded"
+        "handling", "loaded", "charging"
     ),
     effects("job", "busy", "transporter", "hasLuggage", "healer", "relieved", "loaded", "untold", "reserve")
 )]
@@ -268,6 +268,9 @@ impl SafeEventLuggage {
 
     /// Checks that the robot has not been on its job for many times as long as the job takes.
     fn look_at_time(&mut self, knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
+        if knowledge.charging {
+            return None;
+        }
         let job = knowledge.job;
         let longest = || job.map_or(u32::MAX, |job| knowledge.executions_from_charger(&job));
         let executions = self.attempt.note(job.map(|job| job.luggage), longest)?;

@@ -1,0 +1,105 @@
+//! Sites on which the batteries suffice on paper: no robot is stranded, and all luggage is brought, also where chargers
+//! and luggage are in dead ends.
+
+use std::time::Duration;
+
+use saoms_core::report::RunStatus;
+use saoms_testkit::Fleet;
+
+const HOUR: Duration = Duration::from_secs(3600);
+
+fn property(name: &str, value: &str) -> String {
+    format!(r#"<property name="{name}">{value}</property>"#)
+}
+
+fn component(id: &str, class: &str, more: &str) -> String {
+    format!(
+        r#"<component name="{id}"><implementation.rust class="saoms.{class}"/>
+        <property name="ID">{id}</property><property name="period">100ms</property>{more}</component>
+"#
+    )
+}
+
+/// A site with this map, and a robot for each digit on it, whose charger is there.
+fn site(map: &str, has_zone: bool, robot: &str, scenario: &str) -> Fleet {
+    let world = r#"<reference name="world" target="World"/>"#;
+    let free: String = map.chars().map(|sign| if sign.is_ascii_digit() { '.' } else { sign }).collect();
+    let mut components = component("World", "World", &property("map", &free));
+    if has_zone {
+        components += &component("Zone", "Zone", world);
+    }
+    components += &component("Master", "MasterEnvironment", "");
+    components += &component("Environment", "Environment", &property("scenario", scenario));
+    for (row, line) in map.lines().enumerate() {
+        for (column, sign) in line.chars().enumerate().filter(|(_, sign)| sign.is_ascii_digit()) {
+            let charger = property("chargeX", &column.to_string()) + &property("chargeY", &row.to_string());
+            components += &component(&format!("Robot{sign}"), "Robot", &[world, &charger, robot].concat());
+        }
+    }
+    Fleet::of_text(format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="s" targetNamespace="urn:s">
+{components}</composite>"#
+    ))
+}
+
+/// The check says nothing, and each run ends by itself with all luggage delivered and all invariants kept.
+#[track_caller]
+fn expect_all_brought(fleet: &Fleet, seeds: std::ops::Range<u64>) {
+    assert_eq!(fleet.diagnostics(), "");
+    for seed in seeds {
+        assert_eq!(fleet.violations(seed, HOUR), "", "seed {seed}");
+        let run = fleet.run(seed, HOUR);
+        assert_eq!(run.outcome.status, RunStatus::Done, "seed {seed}: {:?}\n{}", run.outcome.reasons, run.log());
+    }
+}
+
+/// A charger in a dead end, and one beside its mouth.
+const MOUTH: &str = "@1@.....\n@.@.....\n2.......\n........\n.......3";
+
+#[test]
+fn luggage_is_brought_into_the_dead_end_where_another_robot_rests() {
+    for has_zone in [false, true] {
+        let scenario = "at 1s luggage (5,4) to (1,0); at 1s luggage (6,3) to (1,1); at 20s luggage (1,0) to (7,0)";
+        expect_all_brought(&site(MOUTH, has_zone, "", scenario), 0..5);
+    }
+}
+
+#[test]
+fn a_robot_that_has_to_charge_lets_another_one_out_of_the_dead_end_with_its_charger() {
+    // Who goes in is the more urgent one, and holds the mouth.
+    let scenario = "at 1s luggage (7,4) to (7,2) ; from 1s every 1s..3s 12 times luggage (1,0)..(1,1) to (4,2)..(7,4)";
+    expect_all_brought(&site(MOUTH, false, "", scenario), 0..8);
+}
+
+#[test]
+fn random_luggage_strands_nobody_on_sites_whose_batteries_suffice() {
+    let maps = [
+        "1......2\n..@@.@..\n..@.....\n.....@..\n.@......\n3.@....4",
+        "..1@..2.\n..@...@.\n3.......\n..@.@...\n.@...@4.",
+        "1..........\n2.@@@.@@@..\n3..........\n4.@@@.@@@..\n...........\n5..........",
+    ];
+    let physical = property("dischargePerBlock", "0.8")
+        + &property("dischargePerSecond", "0.5")
+        + &property("chargePerSecond", "1.5");
+    let scenario = "from 1s every 300ms..900ms 20 times luggage random to random";
+    let by_execution = property("discharge", "1");
+    let by_execution = by_execution.as_str();
+    for (index, map) in (0..).zip(maps) {
+        for (has_zone, robot) in
+            [(false, by_execution), (true, by_execution), (false, physical.as_str()), (true, physical.as_str())]
+        {
+            expect_all_brought(&site(map, has_zone, robot, scenario), 2 * index..2 * index + 2);
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_charges_for_long_does_not_stand_still_and_one_that_is_stranded_is_told() {
+    let slow = property("dischargePerBlock", "2") + &property("chargePerSecond", "0.4") + &property("battery", "30");
+    let fleet = site("1....\n.....\n.....", false, &slow, "at 1s luggage (4,2) to (0,2)");
+    expect_all_brought(&fleet, 0..1);
+    let far = property("startX", "6") + &property("startY", "2") + &property("battery", "3");
+    let fleet = site("1......\n.......\n.......", false, &far, "at 1s luggage (1,0) to (3,0); at 5s end");
+    let violations = fleet.violations(0, HOUR);
+    assert!(violations.contains("5 no battery is empty away from a charger"), "{violations}");
+}
