@@ -4,6 +4,7 @@ mod assignment;
 mod environment;
 mod event_filter;
 mod open_luggage;
+mod part;
 pub mod robot;
 mod unanswered;
 
@@ -12,4 +13,5 @@ pub use assignment::{
 };
 pub use environment::{MasterEnvironment, MasterEnvironmentProperties};
 pub use open_luggage::{OpenLuggage, WaitingPiece};
+pub(crate) use part::FIRST;
 pub use robot::MasterRobot;

@@ -25,6 +25,17 @@ pub struct Priority {
     pub robot: u32,
 }
 
+/// Least rank of a way to work or to a charger that is needed in time: the highest byte of a rank is the purpose of the
+/// way.
+const WORK: u64 = 2 << 56;
+
+impl Priority {
+    /// True if the robot is on its way with a job, or to a charger that it has to reach in time; false if it is free.
+    pub fn is_for_work(&self) -> bool {
+        self.rank >= WORK
+    }
+}
+
 impl Ord for Priority {
     fn cmp(&self, other: &Priority) -> std::cmp::Ordering {
         self.rank.cmp(&other.rank).then(other.robot.cmp(&self.robot))

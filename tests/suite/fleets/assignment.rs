@@ -130,6 +130,17 @@ fn a_broken_robot_loses_no_luggage_that_a_master_assigned() {
 }
 
 #[test]
+fn luggage_is_assigned_again_whose_robot_breaks_before_it_answers() {
+    let robots = [(0, 0, ""), (10, 10, "")];
+    for at in (11..=16).map(|tenths| f64::from(tenths) / 10.0) {
+        let scenario = format!(
+            "at 0s for 2s delay 300ms from Master to Robot1; at 1s luggage (1,1) to (3,3); at {at}s breakdown Robot1"
+        );
+        delivers(&fleet(11, "assignment=optimal", &scenario, &robots), 1, 1);
+    }
+}
+
+#[test]
 fn a_robot_leaves_luggage_for_what_is_much_closer() {
     let scenario = "at 1s luggage (20,0) to (21,0); at 1500ms luggage (4,0) to (4,3)";
     let optimal = delivers(&fleet(22, "assignment=optimal", scenario, &[(0, 0, "")]), 1, 2);

@@ -5,6 +5,7 @@ mod battery;
 mod charging;
 mod composites;
 mod dead_ends;
+mod divided;
 mod endings;
 mod environment;
 mod expand;

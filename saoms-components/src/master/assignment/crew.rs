@@ -43,6 +43,10 @@ pub struct Member {
     moved: Time,
     /// How often it handed luggage back since it took some.
     handed_back: u32,
+    /// True if it works for another master, as its position says.
+    engaged: bool,
+    /// True if it is out of earshot, with a job.
+    away: bool,
 }
 
 /// The robots that bring luggage, by number. As an entry it is a list of [`Member`].
@@ -53,6 +57,9 @@ pub struct Crew {
     free: BTreeSet<u32>,
     /// Robots to which luggage is assigned and that have not answered.
     asked: BTreeSet<u32>,
+    /// Robots that broke or ended before they answered, with the luggage that was assigned to them, and the time until
+    /// which an answer may still come.
+    unanswered: Vec<(u32, u32, Time)>,
     /// Longest period of the robots, in microseconds.
     slowest: u64,
     /// Shortest time from one block to the next that a robot took.
@@ -107,8 +114,10 @@ impl Crew {
 
     /// A crew of which only is known who brings what, after a restart of the master.
     pub(in crate::master) fn with_jobs(jobs: impl Iterator<Item = (u32, u32)>) -> Crew {
-        let member =
-            |(robot, luggage)| (robot, Member { robot, job: Some(luggage), collected: true, ..Member::default() });
+        let member = |(robot, luggage)| {
+            // It counts as out of earshot until it is heard.
+            (robot, Member { robot, job: Some(luggage), collected: true, away: true, ..Member::default() })
+        };
         Crew { members: jobs.map(member).collect(), ..Crew::default() }
     }
 
@@ -124,13 +133,31 @@ impl Crew {
         self.changed |= member.asleep != said.asleep;
         (member.charger, member.battery, member.asleep, member.period) =
             (said.charger, said.battery, said.asleep, said.period);
+        member.away = false;
         self.slowest = self.slowest.max(said.period);
         self.sort(said.robot);
     }
 
+    /// A robot is out of earshot. One that has a job is kept until that is over.
+    pub(in crate::master) fn lose(&mut self, robot: u32) {
+        if let Some(member) = self.members.get_mut(&robot) {
+            member.away = true;
+            self.sort(robot);
+        }
+    }
+
+    /// Notes whether a robot works for another master.
+    pub(super) fn engage(&mut self, robot: u32, engaged: bool) {
+        let Some(member) = self.members.get_mut(&robot).filter(|member| member.engaged != engaged) else { return };
+        member.engaged = engaged;
+        self.changed |= !engaged;
+        self.sort(robot);
+    }
+
     /// A robot is not active any more, or cannot move.
     pub(in crate::master) fn remove(&mut self, robot: u32) {
-        if self.members.remove(&robot).is_some() {
+        if let Some(Member { asked, until, .. }) = self.members.remove(&robot) {
+            self.unanswered.extend(asked.map(|luggage| (robot, luggage, until)));
             self.sort(robot);
         }
     }
@@ -138,9 +165,10 @@ impl Crew {
     /// Handles what a robot said about luggage.
     pub(in crate::master) fn hear_response(&mut self, said: &EventLuggage, now: Time) {
         let rest = self.slowest().saturating_mul(REST);
+        self.unanswered.retain(|(robot, luggage, _)| (*robot, *luggage) != (said.robot, said.luggage));
         let Some(member) = self.members.get_mut(&said.robot) else { return };
         let luggage = Some(said.luggage);
-        member.block = said.block;
+        (member.block, member.engaged) = (said.block, false);
         match said.stage {
             LuggageStage::Taken => {
                 (member.job, member.asked, member.collected) = (luggage, None, false);
@@ -200,7 +228,8 @@ impl Crew {
     /// Robots that did not answer in time, with the luggage that was assigned to them. They are not asked again soon.
     pub(in crate::master) fn take_silent(&mut self, now: Time) -> Vec<(u32, u32)> {
         let rest = now + self.slowest().saturating_mul(8 * REST);
-        let mut silent = Vec::new();
+        let over = self.unanswered.extract_if(.., |(_, _, until)| *until <= now);
+        let mut silent: Vec<(u32, u32)> = over.map(|(robot, luggage, _)| (robot, luggage)).collect();
         for robot in self.asked.iter().copied().collect::<Vec<_>>() {
             if let Some(member) = self.members.get_mut(&robot).filter(|member| member.until <= now)
                 && let Some(luggage) = member.asked.take()
@@ -215,8 +244,13 @@ impl Crew {
 
     /// Notes whether a robot can be asked.
     fn sort(&mut self, robot: u32) {
+        let is_over = |member: &&Member| member.away && member.job.is_none() && member.asked.is_none();
+        if self.members.get(&robot).filter(is_over).is_some() {
+            self.members.remove(&robot);
+        }
         let (is_free, is_asked) = self.members.get(&robot).map_or((false, false), |member| {
-            (!member.asleep && member.job.is_none() && member.asked.is_none(), member.asked.is_some())
+            let has_job = member.job.is_some() || member.asked.is_some();
+            (!(member.asleep || has_job || member.engaged || member.away), member.asked.is_some())
         });
         let note = |set: &mut BTreeSet<u32>, is_in: bool| {
             if is_in {

@@ -2,7 +2,7 @@
 
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use saoms_api::host::declaration::ConstText;
-use saoms_api::{Context, Extras, Field, Header, Knowledge, Time};
+use saoms_api::{Context, Extras, Failure, Field, Header, Knowledge, Subscription, Time};
 
 use super::AssignmentPolicy;
 use super::crew::Crew;
@@ -10,6 +10,7 @@ use super::matching::Candidate;
 use crate::grid::Block;
 use crate::master::event_filter::EventFilter;
 use crate::master::open_luggage::{OpenLuggage, WaitingPiece};
+use crate::master::part::{Early, Part};
 use crate::messages::{Assignment, EventLuggage, Fault, LuggageStage, Position, RobotList};
 use crate::robot::{HEARD, Job};
 use crate::validation::{MessageValidator, Validate};
@@ -36,6 +37,8 @@ pub struct MasterEnvironmentKnowledge {
     /// Checks what others publish.
     pub(in crate::master) validator: MessageValidator,
     pub(in crate::master) filter: EventFilter,
+    /// The blocks whose luggage it assigns; all where there is none.
+    pub(in crate::master) part: Option<Part>,
     #[extras]
     extras: Extras,
 }
@@ -50,6 +53,7 @@ impl MasterEnvironmentKnowledge {
             assignments: Vec::new(),
             validator: MessageValidator::default(),
             filter: EventFilter::default(),
+            part: None,
             extras: Extras::default(),
         }
     }
@@ -158,6 +162,9 @@ impl MasterEnvironmentKnowledge {
         let job = self.crew.get(said.robot).and_then(|member| member.job);
         let from = job.and_then(|luggage| self.open.job(luggage)).map(|piece| piece.job.from);
         self.crew.hear_position(said, from, now);
+        if self.part.is_some() {
+            self.crew.engage(said.robot, said.priority.is_for_work());
+        }
     }
 
     /// Assigns luggage to a robot, or takes it back.
@@ -179,6 +186,7 @@ impl MasterEnvironmentKnowledge {
     pub(in crate::master) fn expire(&mut self, now: Time) {
         for (robot, luggage) in self.crew.take_silent(now) {
             self.open.hand_back(luggage, robot);
+            self.crew.changed = true;
         }
     }
 
@@ -186,5 +194,50 @@ impl MasterEnvironmentKnowledge {
     pub(in crate::master) fn take_away(&mut self, fault: &Fault, header: Header) {
         self.open.take_away(fault, header);
         self.crew.remove(fault.robot);
+    }
+
+    /// True if what begins at this block is for this master; `None` while it does not know that.
+    pub(in crate::master) fn is_for_this(&self, from: Block) -> Option<bool> {
+        let Some(part) = &self.part else { return Some(true) };
+        part.contains(from, self.filter.area())
+    }
+
+    /// Keeps what is requested before the master knows what is for it.
+    pub(in crate::master) fn keep_early(&mut self, header: Header, early: Early) {
+        if let Some(part) = &mut self.part {
+            part.keep(header, early);
+        }
+    }
+
+    /// True if it passes on what belongs to no block.
+    pub(in crate::master) fn speaks_for_all(&self) -> bool {
+        self.part.as_ref().is_none_or(Part::is_first)
+    }
+
+    /// True unless this is about luggage of another master.
+    pub(in crate::master) fn is_about_own(&self, said: &EventLuggage) -> bool {
+        self.part.is_none() || self.open.job(said.luggage).is_some()
+    }
+
+    /// Hears of robots around the part, farther away the longer luggage waits.
+    ///
+    /// # Errors
+    /// The region of hearing cannot be set.
+    pub(in crate::master) fn look_around(
+        &mut self,
+        topics: (&Subscription<Position>, &Subscription<RobotList>),
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let (step, oldest) = (self.crew.step(), self.open.oldest());
+        let Some(part) = &mut self.part else { return Ok(()) };
+        part.look_around(oldest.map(|since| context.now().since(since)), step, topics, context)
+    }
+
+    /// Removes luggage that no robot can bring, as far as all robots are known. Returns number, origin and destination
+    /// of each piece.
+    pub(in crate::master) fn take_hopeless(&mut self, now: Time) -> Vec<(u32, Block, Block)> {
+        // Robots that decide by themselves are all heard.
+        let knows_all = |part: &Part| self.policy == AssignmentPolicy::Robots || part.knows_all(self.filter.area());
+        if self.part.as_ref().is_none_or(knows_all) { self.open.take_hopeless(now) } else { Vec::new() }
     }
 }

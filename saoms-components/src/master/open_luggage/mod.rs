@@ -171,6 +171,12 @@ impl OpenLuggage {
         })
     }
 
+    /// Time of the request of the oldest luggage that waits, for a robot or for help.
+    pub(super) fn oldest(&self) -> Option<Time> {
+        let helps = self.helps.keys().filter_map(|luggage| Some(self.pieces.get(luggage)?.since));
+        self.waiting.first().map(|(since, _)| *since).into_iter().chain(helps).min()
+    }
+
     /// True if no luggage waits.
     pub(super) fn is_nothing_waiting(&self) -> bool {
         self.waiting.is_empty()

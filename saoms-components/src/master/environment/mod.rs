@@ -1,3 +1,5 @@
+mod requests;
+
 use std::collections::VecDeque;
 
 use saoms_api::{
@@ -8,17 +10,19 @@ use saoms_api::{
 use super::assignment::{AssignmentPolicy, Crew, MasterAssignment, MasterEnvironmentKnowledge};
 use super::event_filter::EventFilter;
 use super::open_luggage::{OpenLuggage, OpenMemory};
+use super::part::{Early, Part};
 use super::unanswered::Unanswered;
 use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
     AREA, ASSIGNMENT, Assignment, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT,
     EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LuggageStage, POSITION,
-    Position, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, VISIT, Visit, is_visit,
+    Position, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, TERRITORY, VISIT, Visit, is_visit,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
 use crate::validation::{Problem, SpeakerMemory, Validate};
+use requests::MAX_REQUESTS;
 
 /// The kind of alerts about luggage that no robot can carry.
 const GIVEN_UP: &str = "given_up";
@@ -30,11 +34,12 @@ pub struct MasterEnvironmentProperties {
     /// closest to; or the master, `oldest` luggage first to the closest robot, or `optimal`, with the least total way.
     #[property(default = "robots")]
     pub(crate) assignment: AssignmentPolicy,
+    /// Number of a zone: the master assigns the luggage alone that is collected there, and knows the robots around
+    /// alone. Each zone of the site has such a master then; that of zone 1 also passes on landings, take-offs and
+    /// faults.
+    #[property(range = 1..)]
+    pub(crate) zone: Option<u32>,
 }
-
-/// Greatest number of requests that are published in one execution; others follow in the next ones, so that no queue of
-/// a reader that has eight times the period overflows.
-const MAX_REQUESTS: usize = 128;
 
 /// Distributes the events of the environment to their topics: luggage and faults to the robots, exceptional events to
 /// the master of the robots.
@@ -42,7 +47,7 @@ const MAX_REQUESTS: usize = 128;
 /// Any component may publish on the environment's topic. Impossible events, such as luggage outside the area of the
 /// world, are reported with their sender, counted, and dropped. Luggage that all robots refuse, or for which no robot
 /// is left, is reported as given up. A robot that starts later gets the requests that still wait. The luggage of a
-/// robot that somebody took off the floor waits again.
+/// robot that somebody took off the floor waits again. With `zone`, several masters divide the luggage of a site.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.MasterEnvironment",
@@ -50,7 +55,7 @@ const MAX_REQUESTS: usize = 128;
     saves,
     knowledge = MasterEnvironmentKnowledge,
     loops(MasterAssignment),
-    subscribes(POSITION),
+    subscribes(POSITION, TERRITORY),
     also("unibg.saoms.MasterEnvironmentManagingSystem")
 )]
 pub struct MasterEnvironment {
@@ -107,8 +112,10 @@ impl Component for MasterEnvironment {
     type Properties = MasterEnvironmentProperties;
 
     fn new(properties: MasterEnvironmentProperties) -> Result<Self, Failure> {
+        let mut knowledge = MasterEnvironmentKnowledge::new(properties.assignment);
+        knowledge.part = properties.zone.map(Part::of);
         Ok(MasterEnvironment {
-            knowledge: MasterEnvironmentKnowledge::new(properties.assignment),
+            knowledge,
             loops: Loops::default(),
             requests: VecDeque::new(),
             requested: 0,
@@ -139,6 +146,10 @@ impl Component for MasterEnvironment {
         if self.knowledge.policy != AssignmentPolicy::Robots {
             self.positions = Some(context.subscribe(&POSITION)?);
         }
+        if let Some(part) = &mut self.knowledge.part {
+            part.initialize(context)?;
+            self.knowledge.validator.hear_a_part();
+        }
         self.loops = context.loops()?;
         self.loops.initialize(&mut self.knowledge, context)
     }
@@ -162,10 +173,23 @@ impl Component for MasterEnvironment {
                 self.note_failure(fault, header);
             }
         }
+        for departed in context.departed(&self.robots) {
+            if let Ok(robot) = u32::try_from(departed.key) {
+                self.knowledge.crew.lose(robot);
+                self.knowledge.validator.forget_speaker(robot);
+            }
+        }
         let mut started = Vec::new();
         for (header, robot) in context.receive(&self.robots).with_headers() {
             if self.knowledge.accepts(robot, header, context) && self.knowledge.hear_robot(robot, header) {
                 started.push((header.cause, robot.robot));
+            }
+        }
+        for (header, early) in self.knowledge.part.as_mut().map_or_else(Vec::new, |part| part.learn(context)) {
+            context.because(header.cause);
+            match early {
+                Early::Luggage(request) => self.admit(context, header, &request)?,
+                Early::Visit(visit) => self.ask_to_visit(context, header, &visit)?,
             }
         }
         let now = Timestamp::now(context);
@@ -211,7 +235,7 @@ impl Component for MasterEnvironment {
             self.repeat_for(robot, context)?;
         }
         context.because(Cause::default());
-        for (luggage, from, to) in self.knowledge.open.take_hopeless(context.now()) {
+        for (luggage, from, to) in self.knowledge.take_hopeless(context.now()) {
             context.alert(
                 GIVEN_UP,
                 luggage,
@@ -266,34 +290,17 @@ impl Component for MasterEnvironment {
 impl MasterEnvironment {
     fn sort(&mut self, context: &mut Context<'_>, header: Header, event: &EnvironmentEvent) -> Result<(), Failure> {
         for request in &event.luggage {
-            let EventLuggage { luggage, from, to, .. } = *request;
-            if self.knowledge.open.job(luggage).is_some_and(|known| (known.job.from, known.job.to) == (from, to)) {
-                // Nobody has said yet what becomes of it.
-                continue;
-            }
-            match self.knowledge.filter.luggage(request) {
-                Ok(()) => {
-                    self.knowledge.open.add(luggage, from, to, context.now());
-                    context.count("luggage.requested", 1);
-                    self.request(EventLuggage::request(luggage, from, to), context)?;
-                }
-                Err(refusal) => {
-                    context.count("luggage.ignored", 1);
-                    self.knowledge.validator.log_rejection(context, header, request, refusal.problem);
-                    if refusal.is_lost {
-                        context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
-                    }
-                }
-            }
+            self.admit(context, header, request)?;
         }
-        for exceptional in &event.exceptional {
+        let is_alone = self.knowledge.speaks_for_all();
+        for exceptional in event.exceptional.iter().filter(|_| is_alone) {
             context.send(&self.exceptional, exceptional.clone())?;
         }
         for fault in event.faults.iter().filter(|fault| !fault.is_failure()) {
             if let Err(problem) =
                 fault.validate(header.sender, &mut self.knowledge.validator, self.knowledge.filter.area())
             {
-                context.count("faults.ignored", 1);
+                context.count("faults.ignored", i64::from(is_alone));
                 self.knowledge.validator.log_rejection(context, header, fault, problem);
             } else {
                 match fault.kind {
@@ -307,7 +314,9 @@ impl MasterEnvironment {
                     }
                     FaultKind::Failed | FaultKind::Restarting => {}
                 }
-                context.send(&self.faults, fault.clone())?;
+                if is_alone {
+                    context.send(&self.faults, fault.clone())?;
+                }
             }
         }
         Ok(())
@@ -324,7 +333,8 @@ impl MasterEnvironment {
     /// Tells the robots of those that failed, and requests the luggage of robots that are out again.
     fn open_again(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let has_world = self.knowledge.filter.area().is_some();
-        for fault in self.knowledge.open.untold(has_world) {
+        let is_alone = self.knowledge.speaks_for_all();
+        for fault in self.knowledge.open.untold(has_world).into_iter().filter(|_| is_alone) {
             context.send(&self.faults, fault)?;
         }
         for (robot, request) in self.knowledge.open.open_again(has_world) {
@@ -351,46 +361,6 @@ impl MasterEnvironment {
         Ok(())
     }
 
-    /// Asks the robots for a visit, if it is possible and new.
-    fn ask_to_visit(&mut self, context: &mut Context<'_>, header: Header, visit: &Visit) -> Result<(), Failure> {
-        if header.sender == context.sender() {
-            return Ok(());
-        }
-        let MasterEnvironmentKnowledge { validator, filter, open, .. } = &mut self.knowledge;
-        if open.job(visit.visit).is_some_and(|known| [known.job.from, known.job.to] == visit.ends()) {
-            return Ok(());
-        }
-        let known = filter.knows(visit.visit).then_some(Problem::KnownLuggage);
-        let judged = visit.validate(header.sender, validator, filter.area());
-        if let Some(problem) = known.or(judged.err()) {
-            context.count("errands.ignored", 1);
-            validator.log_rejection(context, header, visit, problem);
-            let [first, last] = visit.ends();
-            return match known {
-                Some(_) => Ok(()),
-                None => context.send(&self.luggage, EventLuggage::given_up(visit.visit, first, last)),
-            };
-        }
-        filter.note(visit.visit);
-        open.add_visit(visit, context.now());
-        self.request(visit.request(), context)
-    }
-
-    /// Publishes a request, where robots decide by themselves who takes it, or one of them has to.
-    fn request(&mut self, request: EventLuggage, context: &mut Context<'_>) -> Result<(), Failure> {
-        let is_theirs =
-            self.knowledge.policy == AssignmentPolicy::Robots || is_visit(request.luggage) && request.robot != 0;
-        if !is_theirs {
-            return Ok(());
-        }
-        if self.requested >= MAX_REQUESTS {
-            self.requests.push_back((context.cause(), request));
-            return Ok(());
-        }
-        self.requested += 1;
-        context.send(&self.luggage, request)
-    }
-
     /// Lets the loops assign what waits.
     fn assign(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let now = context.now();
@@ -401,6 +371,9 @@ impl MasterEnvironment {
             }
         }
         self.knowledge.expire(now);
+        if let Some(positions) = &self.positions {
+            self.knowledge.look_around((positions, &self.robots), context)?;
+        }
         self.loops.monitor(&mut self.knowledge, context)?;
         self.loops.adapt(&mut self.knowledge, context)?;
         for assignment in std::mem::take(&mut self.knowledge.assignments) {
@@ -429,13 +402,20 @@ impl MasterEnvironment {
         for gone in gone {
             context.send(&self.faults, Fault::gone(gone))?;
         }
+        if self.knowledge.part.is_some() {
+            // Who comes from elsewhere was told, and those that failed may be back there.
+            return Ok(());
+        }
         let failures: Vec<Fault> = self.knowledge.open.failures(robot).cloned().collect();
         failures.into_iter().try_for_each(|fault| context.send(&self.faults, fault))
     }
 
     /// Handles a message about luggage from a robot, or from another component on the robots' topic.
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
-        if header.sender == context.sender() || !self.knowledge.accepts(said, header, context) {
+        if header.sender == context.sender()
+            || !self.knowledge.is_about_own(said)
+            || !self.knowledge.accepts(said, header, context)
+        {
             return;
         }
         if said.stage == LuggageStage::Delivered {
