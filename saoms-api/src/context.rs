@@ -47,8 +47,8 @@ impl<'a> Context<'a> {
         Context { has_departed: true, ..self }
     }
 
-    /// For hosts: the same where some inboxes are known to be empty: a bit is set for each of the first 64 that may have
-    /// messages. Code that looks for messages then need not touch the others.
+    /// For hosts: the same where some inboxes are known to be empty: a bit is set for each of the first 64 that may
+    /// have messages. Code that looks for messages then need not touch the others.
     #[must_use]
     pub fn with_filled(self, filled: u64) -> Context<'a> {
         Context { filled, ..self }

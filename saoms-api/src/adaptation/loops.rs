@@ -1,7 +1,7 @@
 use std::fmt;
 
 use super::extras::Writable;
-use crate::host::{DynLoop, EntryDeclaration, Snapshot};
+use crate::host::{DynLoop, EntryDeclaration, Snapshot, prefetch};
 use crate::{Context, Failure, Knowledge};
 
 /// Loops with the names that composites use, in their order.
@@ -32,6 +32,12 @@ impl Loops {
     /// The names in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
+    }
+
+    /// Asks the processor to load all, before an execution.
+    #[inline]
+    pub fn prefetch(&self) {
+        self.instances.iter().for_each(|instance| prefetch(&**instance));
     }
 
     /// Adds the entries of all loops to the knowledge, then initializes all.

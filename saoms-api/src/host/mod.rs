@@ -5,6 +5,7 @@ mod calendar;
 pub mod cdr;
 pub mod contain;
 pub mod declaration;
+mod prefetch;
 pub mod present;
 mod visible;
 mod xml;
@@ -31,6 +32,7 @@ pub use crate::topic::{TopicDeclaration, TopicKind};
 
 /// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
 pub use calendar::calendar_date;
+pub use prefetch::prefetch;
 pub use saoms_derive::WriteProperties;
 pub use smol_str::SmolStr;
 pub use visible::{Visible, is_invisible, one_line, shorten, shown};

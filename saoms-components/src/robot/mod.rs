@@ -29,6 +29,7 @@ mod tally;
 mod upkeep;
 mod zone_client;
 
+use saoms_api::host::prefetch;
 use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Subscription, Time};
 
 use crate::console::Timestamp;
@@ -160,6 +161,9 @@ impl Component for Robot {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        // Both are needed all over; among thousands of robots nothing of them is left in the processor's cache.
+        prefetch(&*self.knowledge);
+        self.loops.prefetch();
         self.knowledge.hear_strain(self.drains, self.outages, context);
         let Some(gone) = self.knowledge.hear_gone(&self.topics, context) else {
             return self.knowledge.leave_floor(context);

@@ -246,7 +246,8 @@ impl Bus {
         self.published
     }
 
-    /// Number of messages at which a reader got another place the last time, so that a [`Watch`] of before holds no more.
+    /// Number of messages at which a reader got another place the last time, so that a [`Watch`] of before holds no
+    /// more.
     #[inline]
     pub fn relinked(&self) -> u64 {
         self.relinked

@@ -34,7 +34,10 @@ impl Problem {
     /// A composite that solves the problem: robots without a battery on a `saoms.World`, and an environment with the
     /// tasks as its scenario. They appear after the first step: then the robots know each other.
     pub fn composite(&self, fleet: &ProblemFleet) -> String {
-        let period = format_duration(fleet.step / fleet.executions.max(1));
+        let period = fleet.step / fleet.executions.max(1);
+        // Requests of one execution of the robots are answered before the next one, though grants wait for a commit.
+        let delay = format_duration(period - period / 10);
+        let period = format_duration(period);
         let step = format_duration(fleet.step);
         let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
             <composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:problem\" \
@@ -44,7 +47,7 @@ impl Problem {
         component(&mut text, "World", "World", &[("period", &step), ("moveTime", &step), ("map", &map)], "");
         let world = "    <reference name=\"world\" target=\"World\"/>\n";
         if fleet.zone {
-            component(&mut text, "Zone", "Zone", &[("period", &period)], world);
+            component(&mut text, "Zone", "Zone", &[("period", &period), ("delay", &delay)], world);
         }
         let master = [("period", period.as_str()), ("assignment", fleet.assignment)];
         component(&mut text, "Master", "MasterEnvironment", &master, "");

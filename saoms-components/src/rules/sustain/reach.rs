@@ -146,7 +146,8 @@ impl<'m> Ways<'m> {
         Some(!is_connected)
     }
 
-    /// Number of moves from a start. The outer `None` means that the budget is used up, the inner one that no way leads there.
+    /// Number of moves from a start. The outer `None` means that the budget is used up, the inner one that no way leads
+    /// there.
     pub(super) fn moves(&mut self, from: Block, to: Block) -> Option<Option<u32>> {
         if self.map.is_open() {
             return Some((self.map.contains(from) && self.map.contains(to)).then(|| from.distance(to)));

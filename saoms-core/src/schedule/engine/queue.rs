@@ -17,6 +17,15 @@ impl Queue {
         self.heap.peek().map(|Reverse((when, _))| *when)
     }
 
+    /// The components of the first two entries.
+    #[inline]
+    pub(crate) fn first_two(&self) -> [Option<u32>; 2] {
+        // The second entry of a heap is one of the two below the first.
+        let entries = self.heap.as_slice();
+        let second = entries.iter().skip(1).take(2).max();
+        [entries.first(), second].map(|entry| entry.map(|Reverse((_, component))| *component))
+    }
+
     /// Takes the first entry, if it is due.
     pub(crate) fn pop_due(&mut self, now: u64) -> Option<(u64, u32)> {
         let Reverse((when, _)) = *self.heap.peek()?;
