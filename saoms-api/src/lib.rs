@@ -54,8 +54,6 @@ pub mod builtin_interfaces;
 mod chance;
 mod component;
 mod context;
-mod derived;
-mod dyn_component;
 pub mod event;
 pub mod extension;
 mod failure;
@@ -64,16 +62,10 @@ mod finding;
 pub mod host;
 mod message;
 mod property;
-mod region;
-mod registration;
 mod report;
 pub mod rule;
-mod saved;
 mod service;
-mod stop;
-mod task;
 mod time;
-mod topic;
 
 pub use adaptation::{
     Adaptation, Cause, Effector, Entries, Entry, Extras, Knowledge, Loop, LoopClass, Loops, Record, Recordable,
@@ -81,21 +73,15 @@ pub use adaptation::{
 };
 pub use bounded::Bounded;
 pub use chance::Chance;
-pub use component::{Class, Component};
+pub use component::{Class, Component, Own, Saved, StopFunction, TaskInterface, TaskInterfaceReference};
 pub use context::{Context, Level};
-pub use derived::Own;
 pub use failure::{CallError, Failure};
 pub use field::Field;
 pub use finding::{Finding, Place};
-pub use message::{Header, Message, Messages};
+pub use message::{Departed, Header, KnownPublisher, Message, Messages, Publisher, Region, Subscription, Topic};
 pub use property::{Properties, PropertyField};
-pub use region::{Departed, Region};
 pub use report::{ReportValue, Work};
-pub use saved::Saved;
-pub use stop::StopFunction;
-pub use task::{TaskInterface, TaskInterfaceReference};
 pub use time::Time;
-pub use topic::{KnownPublisher, Publisher, Subscription, Topic};
 
 pub use saoms_derive::{Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface};
 
@@ -104,7 +90,7 @@ pub use saoms_derive::{Class, Entries, Field, Knowledge, LoopClass, Message, Pro
 pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::boundary::{API, class_table, loop_class_table, rule_table};
-    pub use crate::derived::{DefaultOf, Different, NoDefault, Same, no_update, parts};
+    pub use crate::component::derived::{DefaultOf, Different, NoDefault, Same, no_update, parts};
     pub use crate::host::contain::install_hook;
     pub use crate::host::declaration::ConstText;
     pub use crate::message::{Key, is_pair, pair_of};

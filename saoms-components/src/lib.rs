@@ -8,7 +8,6 @@
 pub mod broker;
 pub mod console;
 pub mod environment;
-mod failure;
 mod gone;
 pub mod grid;
 pub mod hardware;

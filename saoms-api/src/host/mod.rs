@@ -19,16 +19,16 @@ pub use crate::adaptation::{
     Snapshot, Subject,
 };
 pub use crate::bounded::Measured;
-pub use crate::derived::{Derived, DerivedLoop, Fields};
-pub use crate::dyn_component::DynComponent;
+pub use crate::component::derived::{Derived, DerivedLoop, Fields};
+pub use crate::component::dyn_component::DynComponent;
+pub use crate::component::registration::Registration;
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;
+pub use crate::message::topic::{TopicDeclaration, TopicKind};
 pub use crate::property::{PropertyValue, RESERVED, WriteProperties};
-pub use crate::registration::Registration;
 pub use crate::rule::nearest::{nearest_equal, nearest_few};
 pub use crate::service::{Interface, Invocation, Operation, Reference, ReferenceField, ServiceCall, TypedCall};
 pub use crate::time::{format_duration, meant_duration, parse_duration};
-pub use crate::topic::{TopicDeclaration, TopicKind};
 
 /// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
 pub use calendar::calendar_date;

@@ -14,8 +14,6 @@ mod console;
 mod hardware_client;
 mod job;
 mod knowledge;
-mod lasting;
-mod latency;
 mod lists;
 mod memory;
 mod orders;

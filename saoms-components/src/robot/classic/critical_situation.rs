@@ -8,7 +8,7 @@ use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
     LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
 };
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{ASSISTANCE, Help, RobotKnowledge, Trouble};
 
 /// Asks for help when the robot cannot go on, and heals other robots (listings 6.7 to 6.10).

@@ -3,7 +3,7 @@ use std::cmp::Reverse;
 use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, info, record};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{Job, Request, RobotKnowledge};
 
 /// Decides which robot brings which luggage (listings 6.5 and 6.9).

@@ -2,7 +2,7 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Saved, rec
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 
 /// Announces in each execution that this robot is active.
 #[derive(Debug, Default, LoopClass)]

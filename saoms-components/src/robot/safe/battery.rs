@@ -2,7 +2,7 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, in
 
 use super::gain::Gain;
 use crate::grid::{Block, UNREACHABLE};
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{RobotKnowledge, Trouble};
 
 /// Returns to the charger in time, and leaves it when the battery lasts for the robot's work.

@@ -2,7 +2,7 @@ use saoms_api::{Context, Failure, Field, Loop, LoopClass, Record, Recordable, Sa
 
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::zone_client::InTheWay;
 
 /// Lets the robot enter the block that it wants only once no other robot holds or wants it.

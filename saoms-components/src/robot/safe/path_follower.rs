@@ -4,7 +4,7 @@ use crate::grid::Block;
 use crate::hardware::Action;
 use crate::messages::{IMMOVABLE, POSITION, Position};
 use crate::robot::actions::Outcome;
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{RobotKnowledge, Variables};
 
 use super::leg::Urgency;

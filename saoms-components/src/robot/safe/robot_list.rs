@@ -2,7 +2,7 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 
 /// Announces that this robot is active.
 ///

@@ -4,7 +4,7 @@ use saoms_api::{
 };
 
 use crate::messages::{ROBOT_STATE, RobotList, RobotState};
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{Help, Request, RobotKnowledge};
 
 /// Number of executions for which a sleeping robot leaves luggage to each robot that is asked before it.

@@ -1,5 +1,6 @@
 //! One component between the engine and its own code: its body, the host of its context, and calls to others.
 
+mod as_bytes;
 pub(super) mod body;
 mod call;
 pub(crate) mod collection;

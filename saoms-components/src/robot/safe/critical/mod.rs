@@ -10,7 +10,7 @@ use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
     LuggageStage, ROBOT_STATE, RobotState,
 };
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{ASSISTANCE, Help, Rival, RobotKnowledge, Trouble};
 
 use super::energy::Feasibility;

@@ -7,7 +7,7 @@ use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publishe
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage};
-use crate::robot::lasting::lasting;
+use crate::robot::memory::lasting::lasting;
 use crate::robot::{ASSISTANCE, Job, JobEnd, Request, RobotKnowledge};
 
 use super::energy::Feasibility;

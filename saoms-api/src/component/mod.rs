@@ -1,6 +1,17 @@
-use crate::derived;
+pub(crate) mod derived;
+pub(crate) mod dyn_component;
+pub(crate) mod registration;
+mod saved;
+mod stop;
+mod task;
+
 use crate::host::{Derived, Invocation, LoopRegistration};
-use crate::{CallError, Context, Failure, Properties, ReportValue, Saved};
+use crate::{CallError, Context, Failure, Properties, ReportValue};
+
+pub use derived::Own;
+pub use saved::Saved;
+pub use stop::StopFunction;
+pub use task::{TaskInterface, TaskInterfaceReference};
 
 /// A component of a fleet, written by an author.
 ///

@@ -1,5 +1,7 @@
 //! Robots that say nothing any more and did not say so: somebody took them off the floor, or their component failed.
 
+mod failure;
+
 use saoms_api::{Field, Header, Time};
 
 use crate::grid::Block;

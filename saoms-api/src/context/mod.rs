@@ -1,26 +1,19 @@
+//! The view that a component has of the fleet.
+
+mod journal;
+mod log;
+
 use std::collections::BTreeMap;
-use std::fmt;
 use std::time::Duration;
 
 use crate::host::{Host, TARGET_SHIFT};
-use crate::host::{Phase, Reference, ServiceCall, SharedMessage};
+use crate::host::{Reference, ServiceCall, SharedMessage};
 use crate::{
-    CallError, Cause, Chance, Departed, Failure, Header, KnownPublisher, Loops, Message, Messages, Publisher, Record,
-    Region, ReportValue, StopFunction, Subscription, Time, Topic, Value, Work,
+    CallError, Chance, Departed, Failure, Header, KnownPublisher, Loops, Message, Messages, Publisher, Region,
+    StopFunction, Subscription, Time, Topic,
 };
 
-/// Severity of a log line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// Something that the operator has to look at.
-    Error,
-    /// Something unexpected that the component could handle.
-    Warning,
-    /// Normal events, for an operator.
-    Info,
-    /// Details, for finding faults.
-    Debug,
-}
+pub use log::Level;
 
 /// Everything that reaches a component from outside: its messages, time, chance, the log, other components.
 ///
@@ -391,137 +384,8 @@ impl<'a> Context<'a> {
         self.host.loops().map(Loops::of)
     }
 
-    /// Tells what follows from what: the next symptom of the present loop comes from this, such as from the
-    /// [cause](Header::cause) of a message. In a component without loops, all that it writes and sends from here on
-    /// does, until the next `because` or the end of the execution.
-    pub fn because(&mut self, cause: Cause) {
-        self.host.because(cause);
-    }
-
-    /// The cause that a message sent now would carry: the newest record of the present loop in this execution. If there
-    /// is none yet, the cause set by [`because`](Context::because), so that a component that only passes a message on
-    /// keeps the chain of causes.
-    pub fn cause(&self) -> Cause {
-        self.host.cause()
-    }
-
-    /// Writes to the journal what a component without loops saw: the beginning of a chain, such as an event that no
-    /// other component caused, or what it makes of a message that it named with [`because`](Context::because). The
-    /// findings of loops are written automatically.
-    ///
-    /// Each call is a record: write changes, and not the state in each execution.
-    pub fn symptom(&mut self, record: Record) {
-        self.host.journal(Phase::Symptom, &record);
-    }
-
-    /// Writes to the journal what a component without loops decided, because of its last [`symptom`](Context::symptom).
-    /// The decisions of loops are written by themselves.
-    pub fn decision(&mut self, record: Record) {
-        self.host.journal(Phase::Decision, &record);
-    }
-
-    /// Writes to the journal what the present loop, or a component without loops, did, beyond the entries of the
-    /// knowledge that it changed: those are written by themselves.
-    pub fn effect(&mut self, record: Record) {
-        self.host.journal(Phase::Effect, &record);
-    }
-
-    pub(crate) fn journal(&mut self, phase: Phase, record: &Record) {
-        self.host.journal(phase, record);
-    }
-
-    /// Writes to the journal that an entry of the knowledge changed by itself, such as a measured level. What a loop
-    /// changes in its plan and execution is written by itself.
-    pub fn changed(&mut self, entry: &'static str, before: impl Into<Value>, after: impl Into<Value>) {
-        self.host.changed(entry, before.into(), after.into());
-    }
-
-    pub(crate) fn enter_loop(&mut self, place: u32) {
-        self.host.enter_loop(Some(place));
-    }
-
-    pub(crate) fn name_loop(&mut self, place: u32, name: &str) {
-        self.host.name_loop(place, name);
-    }
-
-    pub(crate) fn leave_loops(&mut self) {
-        self.host.enter_loop(None);
-    }
-
     /// The name of the component that sent a message; `None` where the host does not know it.
     pub fn sender_name(&self, header: Header) -> Option<&str> {
         self.host.name_of(header.sender)
     }
-
-    /// Writes a line to the log, with the time and the component's name. Formatted only if an observer wants it:
-    /// [`info!`](crate::info) and [`warn!`](crate::warn) take a text with values in it.
-    pub fn log(&mut self, level: Level, line: impl fmt::Display) {
-        self.host.log(level, format_args!("{line}"));
-    }
-
-    /// [`log`](Context::log) at [`Level::Info`].
-    pub fn info(&mut self, line: impl fmt::Display) {
-        self.log(Level::Info, line);
-    }
-
-    /// [`log`](Context::log) at [`Level::Warning`].
-    pub fn warn(&mut self, line: impl fmt::Display) {
-        self.log(Level::Warning, line);
-    }
-
-    /// Says that a person is needed: in the log, at [`Level::Error`], and in the alerts of the fleet, which operators
-    /// acknowledge. `kind` is a word that stands in metrics, such as `assistance`; `subject` says what it is about,
-    /// where a component may have several alerts of a kind. It lasts until [`alert_over`](Context::alert_over) or until
-    /// the component starts anew; the same kind and subject again give it another line.
-    pub fn alert(&mut self, kind: &str, subject: impl fmt::Display, line: impl fmt::Display) {
-        self.host.alert(kind, &subject.to_string(), Some(format_args!("{line}")));
-    }
-
-    /// Says that the [`alert`](Context::alert) of this kind and subject is over; if there is none, nothing happens.
-    pub fn alert_over(&mut self, kind: &str, subject: impl fmt::Display) {
-        self.host.alert(kind, &subject.to_string(), None);
-    }
-
-    /// Writes a line to the classic console (`--console classic`). Formatted only if an observer wants it.
-    pub fn console(&mut self, line: impl fmt::Display) {
-        self.host.console(format_args!("{line}"));
-    }
-
-    /// Sets a value of the run's report, such as `map.blocks`; dots lead into nested objects. The last value counts.
-    pub fn report(&mut self, path: &str, value: impl Into<ReportValue>) {
-        self.host.report(path, value.into());
-    }
-
-    /// Adds to a number of the run's report, such as `luggage.delivered`, which several components may share.
-    pub fn count(&mut self, path: &str, more: i64) {
-        self.host.count(path, more);
-    }
-
-    /// Says whether this component has work left. The run ends by itself when at least one component voted and all that
-    /// voted `Open` or `Done` are [`Work::Done`]. If the component publishes events in the same execution, the run
-    /// continues for three of its longest periods, so that these are read.
-    pub fn vote(&mut self, work: Work) {
-        self.host.vote(work);
-    }
-}
-
-/// Writes a line to the log with values in it, as `format!` takes them; [`Context::info`] takes a text alone.
-///
-/// ```
-/// use saoms_api::{Context, info};
-///
-/// fn tell(context: &mut Context<'_>, pieces: u32) {
-///     info!(context, "has {pieces} pieces");
-/// }
-/// ```
-#[macro_export]
-macro_rules! info {
-    ($context:expr, $($line:tt)+) => { $crate::info!(@ $crate::Level::Info, $context, $($line)+) };
-    (@ $level:expr, $context:expr, $($line:tt)+) => { $context.log($level, ::core::format_args!($($line)+)) };
-}
-
-/// [`info!`](crate::info) at [`Level::Warning`].
-#[macro_export]
-macro_rules! warn {
-    ($context:expr, $($line:tt)+) => { $crate::info!(@ $crate::Level::Warning, $context, $($line)+) };
 }

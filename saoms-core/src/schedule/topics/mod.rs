@@ -1,4 +1,8 @@
-//! Topics of a running fleet, as operators see them.
+//! Topics of a running fleet, as operators see them, and who publishes, speaks and takes there.
+
+pub(super) mod publishers;
+pub(super) mod speakers;
+pub(super) mod takers;
 
 use std::sync::Arc;
 

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 /// The components of a fleet that say who they are in messages, scheduled or not.
 #[derive(Debug, Default)]
-pub(super) struct Speakers {
+pub(in crate::schedule) struct Speakers {
     /// By the name of a topic after renaming.
     topics: HashMap<String, SpokenTopic>,
 }
@@ -48,7 +48,7 @@ impl fmt::Display for ForeignSpeaker {
 }
 
 impl Speakers {
-    pub(super) fn of(specs: impl Iterator<Item = Arc<ComponentSpec>>) -> Speakers {
+    pub(in crate::schedule) fn of(specs: impl Iterator<Item = Arc<ComponentSpec>>) -> Speakers {
         let mut topics: HashMap<String, SpokenTopic> = HashMap::new();
         for spec in specs {
             let class = spec.class.declaration();
@@ -68,12 +68,12 @@ impl Speakers {
     }
 
     /// True if the messages of a topic say who speaks.
-    pub(super) fn are_named_on(&self, topic: &str) -> bool {
+    pub(in crate::schedule) fn are_named_on(&self, topic: &str) -> bool {
         self.topics.contains_key(topic)
     }
 
     /// The component in whose name a message from outside speaks.
-    pub(super) fn find(&self, topic: &str, message: &Value) -> Option<ForeignSpeaker> {
+    pub(in crate::schedule) fn find(&self, topic: &str, message: &Value) -> Option<ForeignSpeaker> {
         let topic = self.topics.get(topic)?;
         topic.fields.iter().find_map(|one| {
             let number = one.speaker(message)?;
@@ -83,7 +83,7 @@ impl Speakers {
     }
 
     /// The fields of the messages of a topic that say who speaks, in words.
-    pub(super) fn fields(&self, topic: &str) -> Vec<String> {
+    pub(in crate::schedule) fn fields(&self, topic: &str) -> Vec<String> {
         self.topics.get(topic).map_or_else(Vec::new, |topic| topic.fields.iter().map(ToString::to_string).collect())
     }
 }

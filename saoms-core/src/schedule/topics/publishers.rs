@@ -6,11 +6,11 @@ use std::sync::Arc;
 use saoms_api::KnownPublisher;
 use saoms_lang::assembly::ComponentSpec;
 
-use super::shared::Shared;
+use crate::schedule::shared::Shared;
 
 /// The numbers of the components that declare to publish on each topic, by its name on the bus.
 #[derive(Debug, Default)]
-pub(super) struct DeclaredPublishers {
+pub(in crate::schedule) struct DeclaredPublishers {
     topics: HashMap<String, Vec<u32>>,
 }
 
@@ -32,7 +32,7 @@ impl DeclaredPublishers {
 
 impl Shared {
     /// The components that declare to publish on a topic of this name on the bus, without one.
-    pub(super) fn publishers(&self, topic: &str, without: u32) -> Vec<KnownPublisher> {
+    pub(in crate::schedule) fn publishers(&self, topic: &str, without: u32) -> Vec<KnownPublisher> {
         let mut engine = self.lock();
         let declared = match &engine.publishers {
             Some(known) => Arc::clone(known),

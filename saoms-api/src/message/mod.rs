@@ -1,3 +1,6 @@
+mod region;
+pub(crate) mod topic;
+
 use std::any::Any;
 use std::fmt;
 use std::mem::{self, ManuallyDrop};
@@ -8,6 +11,9 @@ use std::sync::{Arc, OnceLock};
 use crate::host::cdr;
 use crate::host::contain::discard;
 use crate::{Cause, Field, Time};
+
+pub use region::{Departed, Region};
+pub use topic::{KnownPublisher, Publisher, Subscription, Topic};
 
 /// A message between components. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are of the
 /// types that [`Field`] lists. `#[message(...)]` takes

@@ -1,5 +1,7 @@
 //! State of a robot, for the one that takes its place: after a failure, or with a new build of it or of its loops.
 
+pub(super) mod lasting;
+
 use std::time::Duration;
 
 use saoms_api::{Cause, Failure, Field, Message, Saved, SavedLoops, Time};

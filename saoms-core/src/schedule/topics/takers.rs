@@ -8,7 +8,7 @@ use saoms_api::extension::LineFault;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
 
-/// The components of a fleet that take events, as [`Handle::takers`](super::Handle::takers) gives them.
+/// The components of a fleet that take events, as [`Handle::takers`](crate::schedule::Handle::takers) gives them.
 ///
 /// An event reaches all components of a site that take it, or one of them: `to Hall1`.
 #[derive(Debug, Default)]
@@ -39,7 +39,7 @@ pub struct EventMessage {
     /// Its CDR form, which fits the schema of the topic.
     pub bytes: Vec<u8>,
     /// Its key and its block.
-    pub(super) marks: (Option<u64>, Option<(i32, i32)>),
+    pub(in crate::schedule) marks: (Option<u64>, Option<(i32, i32)>),
 }
 
 /// Error of an event that does not happen.
@@ -69,7 +69,7 @@ impl Takers {
     }
 
     /// The takers among these components, given with their numbers.
-    pub(super) fn of(specs: impl Iterator<Item = (u32, Arc<ComponentSpec>)>) -> Takers {
+    pub(in crate::schedule) fn of(specs: impl Iterator<Item = (u32, Arc<ComponentSpec>)>) -> Takers {
         let mut all: Vec<Taker> = Vec::new();
         let mut events: Vec<Event> = Vec::new();
         for (number, spec) in specs.filter(|(_, spec)| !spec.class.declaration().takes.is_empty()) {

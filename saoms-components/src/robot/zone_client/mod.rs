@@ -1,12 +1,14 @@
 //! Client of the zones of a robot's site, which grant it the blocks that it enters.
 
+mod latency;
+
 use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
-use super::latency::Latency;
 use crate::grid::{Block, Map};
 use crate::messages::{GRANT, GRANT_REQUEST, Grant, GrantRequest, Position, RobotList, Step, TERRITORY, Territory};
 use crate::validation::MessageValidator;
 use crate::zone::{Held, Link, Passage, Wish};
+use latency::Latency;
 
 /// Number of executions after which a robot repeats a request that its zone did not confirm.
 const REPEAT: u32 = 4;
