@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use saoms_api::host::TopicDeclaration;
 use saoms_components::messages::{
-    ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage, VISIT, Visit,
+    ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, LuggageStage, VISIT, Visit, is_visit,
 };
 use saoms_core::observe::{Interest, Observer, SentMessage};
 use saoms_core::schedule::{RunningFleet, Settings};
@@ -76,7 +76,8 @@ impl Observer for Watch {
         if let Some(event) = sent.message.get::<EnvironmentEvent>() {
             event.luggage.iter().for_each(|luggage| tasks.show(luggage.luggage, at));
         }
-        if let Some(visit) = sent.message.get::<Visit>() {
+        // Some responses could be read as visits, too.
+        if let Some(visit) = sent.message.get::<Visit>().filter(|visit| is_visit(visit.visit)) {
             tasks.show(visit.visit, at);
         }
         let Some(said) = sent.message.get::<EventLuggage>() else { return };

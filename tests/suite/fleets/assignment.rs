@@ -160,6 +160,22 @@ fn the_oldest_luggage_goes_first_or_the_closest() {
 }
 
 #[test]
+fn of_equally_close_luggage_the_one_with_the_longer_way_goes_first() {
+    let scenario = "at 1s luggage (0,10) to (0,12); at 1s luggage (10,0) to (20,10)";
+    let run = delivers(&fleet(22, "assignment=optimal", scenario, &[(0, 0, "")]), 1, 2);
+    assert_eq!(taken(&run, "Robot1"), ["2", "1"], "{}", run.log());
+}
+
+#[test]
+fn luggage_is_not_kept_for_ever_for_a_robot_that_gets_nowhere() {
+    // Robot 1 would be at luggage 2 first, but does not move for as long as 450 moves take.
+    let scenario = "at 1s luggage (1,0) to (9,0); at 2500ms slow robot=1 factor=1000 lasting=90s; \
+        at 4s luggage (12,0) to (12,3)";
+    let run = delivers(&fleet(22, "assignment=optimal", scenario, &[(0, 0, ""), (20, 20, "")]), 1, 2);
+    assert_eq!((taken(&run, "Robot1"), taken(&run, "Robot2")), (vec!["1".into()], vec!["2".into()]), "{}", run.log());
+}
+
+#[test]
 fn thousands_of_pieces_at_once_overflow_no_queue() {
     for (side, master) in [(12, ""), (90, ""), (12, "assignment=optimal")] {
         let robots = [(0, 0, ""), (5, 5, ""), (10, 0, "asleep=true")];

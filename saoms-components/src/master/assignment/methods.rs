@@ -35,6 +35,13 @@ const EXCHANGE: i64 = 6;
 /// What a moment of waiting counts for urgent luggage, in blocks for each move.
 const URGENCY: i64 = 100;
 
+/// Number of parts of a block in which costs are counted.
+const PARTS: i64 = 4;
+
+/// What a block between origin and destination counts for a piece, in parts of a block: long ones go first, so that the
+/// last ones are short.
+const LENGTH: i64 = 1;
+
 impl MasterEnvironmentKnowledge {
     /// What waits, and who is free.
     pub(super) fn unassigned(&self, now: Time) -> Unassigned {
@@ -162,6 +169,11 @@ pub(super) fn optimal(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<
         (waited - i64::from(PATIENCE)).clamp(0, 1_000_000) * URGENCY
     };
     let own = |row: usize| row.checked_sub(free).map(|place| first_taken + place);
+    // What is to be preferred to other pieces, in parts of a block.
+    let ahead = |piece: &WaitingPiece| {
+        let length = i64::from(piece.job.from.distance(piece.job.to));
+        urgency(piece).saturating_mul(PARTS) + length * LENGTH
+    };
     let mut costs: Vec<Vec<i64>> = Vec::new();
     for (row, robot) in robots.iter().enumerate() {
         let cost = |(column, piece): (usize, &WaitingPiece)| {
@@ -174,17 +186,21 @@ pub(super) fn optimal(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<
                 _ if column >= first_taken => EXCHANGE,
                 _ => 0,
             };
-            i64::from(way) + change - urgency(piece)
+            (i64::from(way) + change) * PARTS - ahead(piece)
         };
         costs.push(pieces.iter().enumerate().map(cost).collect());
     }
-    // Those that still carry luggage compete for what they are going to be close to.
+    // Those that still carry luggage compete for what they are going to be close to, but for urgent pieces: one that is
+    // stuck would keep them from all others.
     for (robot, job) in knowledge.carrying() {
-        let rest = ways.between(robot.block, job.to).map_or(NEVER, i64::from);
+        let Some(rest) = ways.between(robot.block, job.to) else { continue };
         let cost = |(column, piece): (usize, &WaitingPiece)| {
-            let way = ways.between(job.to, piece.job.from).map_or(NEVER, i64::from);
-            let refused = column >= first_taken || knowledge.open.is_refused(piece.job.luggage, robot.robot);
-            if refused { NEVER } else { (rest + way + 1).min(NEVER) - urgency(piece) }
+            let is_kept = column >= first_taken || urgency(piece) > 0;
+            if is_kept || knowledge.open.is_refused(piece.job.luggage, robot.robot) {
+                return NEVER;
+            }
+            let Some(way) = ways.between(job.to, piece.job.from) else { return NEVER };
+            (i64::from(rest) + i64::from(way) + 1) * PARTS - ahead(piece)
         };
         costs.push(pieces.iter().enumerate().map(cost).collect());
     }

@@ -41,9 +41,10 @@ pub enum AssignmentPolicy {
 ///   luggage has waited twice as long, it is twice as large.
 /// - `oldest`: the oldest luggage first, to the closest free robot.
 /// - `optimal`: so that the total way of the robots to it is the least. Until a robot collects its luggage, it may get
-///   other luggage, if that saves more than a few blocks. Luggage that has waited for long goes first, the oldest
-///   before the others, so that none waits for ever. With more than 128 robots at once each robot takes the closest
-///   piece, or each piece the closest robot, whichever are fewer.
+///   other luggage, if that saves more than a few blocks. Long ways to destinations count a little, so that the last
+///   jobs are short. Luggage that has waited for long goes first, the oldest before the others, and to robots that
+///   carry nothing, so that none waits for ever. With more than 128 robots at once each robot takes the closest piece,
+///   or each piece the closest robot, whichever are fewer.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.master.AssignmentMS",
