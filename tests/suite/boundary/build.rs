@@ -62,7 +62,9 @@ fn copy_of_api(folder: &Path) {
     let members = "[workspace]\nmembers = [\"saoms-abi\", \"saoms-api\", \"saoms-derive\"]\n\n[workspace.package]";
     write(&folder.join("Cargo.toml"), &format!("{members}{package}\n"));
     for name in ["saoms-abi", "saoms-api", "saoms-derive"] {
-        copy(&root().join(name).join("src"), &folder.join(name).join("src"), &str::to_owned);
+        let (from, to) = (root().join(name).join("src"), folder.join(name).join("src"));
+        remove_what_left(&from, &to);
+        copy(&from, &to, &str::to_owned);
         copy_file(&root().join(name).join("Cargo.toml"), &folder.join(name).join("Cargo.toml"), &manifest);
     }
 }
@@ -77,6 +79,20 @@ fn copy(from: &Path, to: &Path, change: &dyn Fn(&str) -> String) {
 
 fn copy_file(from: &Path, to: &Path, change: &dyn Fn(&str) -> String) {
     write(to, &change(&fs::read_to_string(from).unwrap()));
+}
+
+/// Removes from an earlier copy what its origin does not have any more.
+fn remove_what_left(from: &Path, to: &Path) {
+    for entry in fs::read_dir(to).into_iter().flatten() {
+        let copied = entry.unwrap().path();
+        let origin = from.join(copied.file_name().unwrap());
+        match (copied.is_dir(), origin.is_dir()) {
+            (true, true) => remove_what_left(&origin, &copied),
+            (true, false) => fs::remove_dir_all(&copied).unwrap(),
+            (false, _) if !origin.is_file() => fs::remove_file(&copied).unwrap(),
+            (false, _) => {}
+        }
+    }
 }
 
 /// Writes what is new, so that the rest is not built again.
