@@ -190,14 +190,17 @@ impl RunInvariants for FleetInvariants {
             Finder { site: "", at, found: &mut self.found }.note(ONCE, text);
         }
         let seconds = at.since(Time::START).as_secs_f64();
-        let mean = |all: &[f64]| if all.is_empty() { 0.0 } else { all.iter().sum::<f64>() / all.len() as f64 };
         let figure = |name, value| Measure { name, value, of: None };
         self.measures = vec![
             Measure { name: "pieces delivered", value: delivered as f64, of: Some(requested as f64) },
             figure("pieces in an hour", if seconds > 0.0 { delivered as f64 * 3600.0 / seconds } else { 0.0 }),
-            figure("mean wait of a piece, s", mean(&waits)),
-            figure("longest wait of a piece, s", waits.iter().copied().fold(0.0, f64::max)),
         ];
+        // Where nothing was brought, nobody knows how long it waits.
+        if let Some(longest) = waits.iter().copied().reduce(f64::max) {
+            let mean = waits.iter().sum::<f64>() / waits.len() as f64;
+            self.measures.push(figure("mean wait of a piece, s", mean));
+            self.measures.push(figure("longest wait of a piece, s", longest));
+        }
     }
 
     fn violations(&mut self) -> Vec<Violation> {

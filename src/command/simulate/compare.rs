@@ -164,7 +164,11 @@ impl fmt::Display for Comparison<'_> {
                 moments(one.b),
                 one.difference.mean,
                 one.pairs,
-                if one.is_beyond_chance { "yes" } else { "no" }
+                match (one.interval, one.is_beyond_chance) {
+                    (None, _) => "-",
+                    (Some(_), true) => "yes",
+                    (Some(_), false) => "no",
+                }
             )?;
         }
         if equal > 0 {

@@ -32,6 +32,12 @@ Exit codes:
   2    the input is wrong: a composite, a value, a file of faults or the command line; nothing was started
   130  ended by Ctrl-C, SIGTERM or SIGHUP";
 
+/// Greatest number of seeds.
+const MOST_SEEDS: u64 = 10_000_000;
+
+/// Greatest first seed, so that all seeds are numbers.
+const LAST_FIRST: u64 = u64::MAX - MOST_SEEDS;
+
 /// Run a fleet in virtual time with many seeds, and hold each run to the invariants of its components
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
@@ -40,11 +46,11 @@ pub(crate) struct SimulateArguments {
     pub(crate) fleet: FleetArguments,
 
     /// The number of seeds, one run for each; the first one and each tenth after it run twice, for the same trace
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
     pub(crate) seeds: u64,
 
     /// The first seed; the others follow
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=LAST_FIRST))]
     pub(crate) first: u64,
 
     /// Run the fleet of this composite with the same seeds, too, and compare both, with how they adapt; may be repeated
@@ -146,7 +152,8 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> Exit {
         Ok(simulations) => simulations,
         Err(exit) => return exit,
     };
-    let last = arguments.first.saturating_add(arguments.seeds - 1);
+    // The ranges of both leave room for all seeds.
+    let last = arguments.first + (arguments.seeds - 1);
     let tables = simulations.iter().zip([Side::One, Side::Other]).map(|((fleet, simulation), side)| {
         let began = Instant::now();
         let results = crew::run(arguments, side, arguments.first..=last)?;
@@ -193,6 +200,9 @@ fn simulation(arguments: &SimulateArguments, fleet: &FleetArguments) -> Result<S
         None => None,
     };
     if let Some(Err(wrong)) = script.as_ref().map(|script| script.events(&known, arguments.first)) {
+        if arguments.other().is_some() {
+            eprint(&format!("in the fleet of {}:\n", named(fleet)));
+        }
         report_wrong(&wrong);
         return Err(Exit::WrongInput);
     }

@@ -98,6 +98,18 @@ fn a_storm_harms_no_fleet_with_zones() {
     assert!(delivered.0 >= 0.99 * delivered.1 && delivered.1 >= 24.0 * 195.0, "{delivered:?}");
 }
 
+/// Zones answered so late that no full battery lasted with the reserve for that: robots went between their own charger
+/// and the one that they had borrowed, which they kept from others.
+#[test]
+fn robots_with_a_full_battery_leave_a_charger_to_others_however_late_zones_answer() {
+    let folder = empty_folder("simulate-late");
+    let (composite, faults) = (root().join("composites/storm.composite"), root().join("composites/storm.txt"));
+    let arguments = ["--faults", faults.to_str().unwrap(), "--seeds", "1", "--first", "7484"];
+    let (code, told, _) = simulate_file(&folder, composite.to_str().unwrap(), &arguments);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("24 of 24"), "{told}");
+}
+
 #[test]
 fn wrong_input_starts_nothing() {
     let folder = empty_folder("simulate-wrong");

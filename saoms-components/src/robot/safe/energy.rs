@@ -333,10 +333,12 @@ impl RobotKnowledge {
         self.zones.as_ref().map_or(0, |zones| zones.latency())
     }
 
-    /// True if the battery lasts for the way to another charger with the usual reserve, or is full.
+    /// True if the battery lasts for the way to another charger with the usual reserve, or is full. While zones answer
+    /// late that reserve is large, and a full battery waits until they answer soon again.
     pub(super) fn lasts_to(&mut self, charger: Block) -> bool {
         let needs = self.home_to(charger).saturating_add(self.usual_reserve());
-        self.battery.is_full() || self.executions_left() >= needs
+        let is_full = self.battery.is_full() && self.latency() <= USUAL_LATENCY;
+        is_full || self.executions_left() >= needs
     }
 
     /// Number of executions from the robot's next block to another charger.

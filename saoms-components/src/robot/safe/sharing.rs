@@ -16,7 +16,7 @@ const WAITING_AT: u32 = 2;
 impl RobotKnowledge {
     /// True if a robot at a charger that it shares still needs it, and may keep it.
     pub(super) fn keeps_shared_charger(&self) -> bool {
-        let needs = self.must_charge || !self.is_well_charged();
+        let needs = (self.must_charge && !self.battery.is_full()) || !self.is_well_charged();
         if !needs || self.energy.gives_nothing {
             return false;
         }

@@ -151,6 +151,31 @@ fn a_fleet_with_another_period_reacts_later() {
 }
 
 #[test]
+fn one_pair_says_nothing_of_chance_and_what_nobody_brings_has_no_wait() {
+    let simulate = ["simulate", "composites/airport.composite", "--seeds", "1", "--for", "3s"];
+    let told = text(&saoms(&[&simulate[..], &["--against-set", "period=200"]].concat()));
+    let rows: Vec<&str> = told.lines().skip_while(|line| !line.starts_with("mean of runs")).skip(1).collect();
+    let rows: Vec<&&str> = rows.iter().filter(|row| row.contains(" \u{b1} ")).collect();
+    assert!(rows.iter().any(|row| row.starts_with("pieces delivered ")), "{told}");
+    assert!(rows.iter().all(|row| row.ends_with("  -") && !row.contains("wait of a piece")), "{told}");
+}
+
+#[test]
+fn the_first_seed_leaves_room_for_the_others() {
+    let output = saoms(&["simulate", "composites/airport.composite", "--first", "18446744073709551615"]);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+    assert!(text(&output).contains("--first <SEED>"), "{}", text(&output));
+}
+
+#[test]
+fn a_fault_that_one_of_two_fleets_does_not_have_is_told_with_that_fleet() {
+    let simulate = ["simulate", "composites/storm.composite", "--faults", "composites/storm.txt", "--seeds", "2"];
+    let output = saoms(&[&simulate[..], &["--against", "composites/airport.composite"]].concat());
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+    assert!(text(&output).contains("in the fleet of composites/airport.composite:\n"), "{}", text(&output));
+}
+
+#[test]
 fn a_fleet_is_like_itself() {
     let (code, rows, told) = compared(&["--against", "composites/airport.composite"]);
     assert_eq!((code, rows.len()), (Some(0), 0), "{told}");
