@@ -125,8 +125,9 @@ fn one_more_client_than_there_are_places_is_told_so_and_hinders_no_other_way() {
     let [socket, network] = ways(&served);
     for (way, other) in [(&network, &socket), (&socket, &network)] {
         let held: Vec<_> = (0..512).map(|_| (way.connect)()).collect();
-        // The server takes them one after the other.
-        let refused = (0..500).find_map(|_| way.client.description().err()).unwrap().to_string();
+        // The server takes them one after the other; where it is slow, the queue of the system is full in the meantime.
+        let mut refusals = (0..500).filter_map(|_| Some(way.client.description().err()?.to_string()));
+        let refused = refusals.find(|refused| !refused.contains("timed out")).unwrap();
         assert!(refused.contains("no more places"), "{refused}");
         assert_eq!(other.client.description().unwrap().pid, 7);
         drop(held);
