@@ -5,8 +5,8 @@ use crate::{Cause, Context, Record, Value};
 
 impl Context<'_> {
     /// Tells what follows from what: the next symptom of the present loop comes from this, such as from the
-    /// [cause](Header::cause) of a message. In a component without loops, all that it writes and sends from here on
-    /// does, until the next `because` or the end of the execution.
+    /// [cause](crate::Header::cause) of a message. In a component without loops, all that it writes and sends from here
+    /// on does, until the next `because` or the end of the execution.
     pub fn because(&mut self, cause: Cause) {
         self.host.because(cause);
     }
