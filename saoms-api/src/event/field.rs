@@ -158,7 +158,7 @@ impl FieldType {
             FieldType::Scalar { allowed, .. } if !allowed.is_empty() => allowed[0].clone(),
             FieldType::Scalar { kind, .. } => match kind {
                 PropertyKind::Boolean => "true",
-                PropertyKind::Float => "0.5",
+                PropertyKind::Float => "1.5",
                 PropertyKind::Duration => "2s",
                 PropertyKind::Integer => "1",
                 _ => "\"text\"",

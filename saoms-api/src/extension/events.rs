@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicU32;
 use crate::Time;
 use crate::event::Events;
 use crate::host::TopicDeclaration;
+use crate::rule::FleetView;
 
 /// A language of events from outside the fleet: `saoms run --events` reads lines of it.
 ///
@@ -16,6 +17,8 @@ pub struct EventLanguage {
     pub topic: TopicDeclaration<'static>,
     /// Codes of findings that do not hold for a run with such events: that nothing brings work.
     pub settles: &'static [&'static str],
+    /// Judges a line without faults before a run starts, by the fleet or the site that its events are for.
+    pub judge: fn(&FleetView<'_>, &Events, &str) -> Result<(), LineFault>,
     /// Makes a reader of one source of events.
     pub new: fn(EventSource) -> Box<dyn EventReader>,
 }
@@ -34,6 +37,8 @@ impl EventLanguage {
 pub struct EventSource {
     /// Its name, from which its chance follows.
     pub name: &'static str,
+    /// What messages call one of its lines, such as "a line of `--events`".
+    pub line: &'static str,
     /// Seed of the run.
     pub seed: u64,
     /// Number of things that the events of all sources of the run have numbered so far.

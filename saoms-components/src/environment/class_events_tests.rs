@@ -122,7 +122,7 @@ fn mistakes_are_told_at_their_words_with_what_is_meant() {
     .map(|line| judged(line, &["breakdown", "end"]))
     .collect();
     expect![[r#"
-        `fier`: found `fier`, expected `breakdown`, `end` or `fire`, meant `fire`
+        `fier`: found `fier`, expected `breakdown`, `end`, `fire`, `lose`, `violate`, `delay`, `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`, meant `fire`
         `fire`: found `fire`, expected `at`, `from` or `then` at the start of a line
         `fule`: event `fire` has no field `fule`, meant `fuel`
         `OLI`: field `fuel`: `OLI` is not allowed: expected `OIL` or `WOOD`, meant `OIL`
@@ -147,7 +147,7 @@ fn mistakes_are_told_at_their_words_with_what_is_meant() {
 
 #[test]
 fn lines_from_outside_have_them_too() {
-    let source = EventSource { name: "(outside)", seed: 1, numbers: Arc::default() };
+    let source = EventSource { name: "(outside)", line: "a line of `--events`", seed: 1, numbers: Arc::default() };
     let (mut reader, events) = (Reader::new(source), events());
     let told = reader
         .read("at 2s 2 times fire at=(1,1) size=1..9; fire at=(1,1) size=1 to Hall1", Time::START, &events)
@@ -180,8 +180,8 @@ fn editors_offer_and_explain_them() {
         offered("at 1s |").0,
         "fire end 3 times for lose violate delay jitter duplicate reorder cut part fail crash drift"
     );
-    assert_eq!(offered("at 1s fire |").0, "at=(1,1) size=1 fuel=OIL heat=0.5 note=\"text\" to");
-    assert_eq!(offered("at 1s fire at=( 1, 1 ) |").0, "size=1 fuel=OIL heat=0.5 note=\"text\" to");
+    assert_eq!(offered("at 1s fire |").0, "at=(1,1) size=1 fuel=OIL heat=1.5 note=\"text\" to");
+    assert_eq!(offered("at 1s fire at=( 1, 1 ) |").0, "size=1 fuel=OIL heat=1.5 note=\"text\" to");
     assert_eq!(offered("at 1s fire fuel=O|").0, "OIL WOOD");
     assert_eq!(offered("at 1s fire size=1 to |").0, "a example.Hall");
     assert_eq!(offered("at 1s fire size=1 to A |").0, "");
@@ -214,7 +214,7 @@ fn lines_have_faults_that_the_fleet_plays() {
     expect![[r#"
         `120 %`: found `120 %`, expected a part from 0 % to 100 %, or from 0 to 1
         `for`: found `for` before `crash`, which happens once
-        `los`: found `los`, expected `luggage` or `fire`, meant `lose`
+        `los`: found `los`, expected `luggage`, `fire`, `lose`, `violate`, `delay`, `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`, meant `lose`
     "#]]
     .assert_eq(&judged(text, &["luggage"]));
 }

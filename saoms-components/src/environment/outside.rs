@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use saoms_api::event::Events;
 use saoms_api::extension::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage, submit};
 use saoms_api::host::cdr;
+use saoms_api::rule::FleetView;
 use saoms_api::{Chance, Time};
 
 use super::player::draw;
@@ -13,13 +14,14 @@ use super::scenario::line::{read_outside, split};
 use super::scenario::{Before, Vocabulary};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
-use crate::rules::scenario::no_work;
+use crate::rules::scenario::{judge_outage, no_work};
 use crate::text::{TextFault, bytes};
 
 submit! {
     EventLanguage {
         topic: ENVIRONMENT.declaration(),
         settles: &[no_work::RULE.code.id],
+        judge,
         new: |source| Box::new(Reader::new(source)),
     }
 }
@@ -34,6 +36,8 @@ const NUMBER: &str = "number";
 /// A reader of scenario lines, without knowledge of the area.
 pub(super) struct Reader {
     chance: Chance,
+    /// What messages call a line.
+    called: &'static str,
     /// Number of pieces of luggage that came from outside.
     luggage: Arc<AtomicU32>,
     /// The time of the last event of the line before.
@@ -44,7 +48,7 @@ pub(super) struct Reader {
 impl Reader {
     pub(super) fn new(source: EventSource) -> Reader {
         let chance = Chance::for_component(source.seed, source.name);
-        Reader { chance, luggage: source.numbers, last: Time::START, before: Before::Start }
+        Reader { chance, called: source.line, luggage: source.numbers, last: Time::START, before: Before::Start }
     }
 
     /// Reads one event of the line.
@@ -54,7 +58,7 @@ impl Reader {
         self.before = Before::Event;
         place_is_known(&line)?;
         if line.times.is_none() && line.until.is_none() {
-            let fault = TextFault::new(line.bytes, "this line never ends, but a line of `--events` has to end");
+            let fault = TextFault::new(line.bytes, format!("this line never ends, but {} has to end", self.called));
             return Err(fault.help("add an end: `100 times`, or `until 60s`"));
         }
         if matches!(line.event, EventSpec::Visit { .. }) {
@@ -73,7 +77,7 @@ impl Reader {
         let until = line.until.map(|until| Time::START + until);
         while until.is_none_or(|until| at <= until) {
             if messages.len() == MOST {
-                let message = format!("found more than {MOST} events in one line of `--events`");
+                let message = format!("found more than {MOST} events in {}", self.called);
                 return Err(TextFault::new(line.bytes, message));
             }
             let event = draw(&line.event, &mut chance, None).ok_or_else(|| {
@@ -157,6 +161,16 @@ fn place_is_known(line: &Line) -> Result<(), TextFault> {
     }
 }
 
+/// Judges the events of a line that was read without a fault.
+fn judge(fleet: &FleetView<'_>, events: &Events, line: &str) -> Result<(), LineFault> {
+    for part in split(line) {
+        let Ok((read, _)) = read_outside(part, Before::Event, Vocabulary::with(events)) else { continue };
+        let offset = bytes(line, part).start + read.bytes.start;
+        judge_outage(fleet, &read.event).map_err(|fault| fault.moved(offset))?;
+    }
+    Ok(())
+}
+
 impl EventReader for Reader {
     fn read(&mut self, line: &str, now: Time, events: &Events) -> Result<Vec<TimedMessage>, LineFault> {
         let mut messages = Vec::new();
@@ -177,7 +191,7 @@ mod tests {
     use super::*;
 
     fn reader(seed: u64) -> Reader {
-        Reader::new(EventSource { name: "(outside)", seed, numbers: Arc::default() })
+        Reader::new(EventSource { name: "(outside)", line: "a line of `--events`", seed, numbers: Arc::default() })
     }
 
     /// The events of lines that come one after the other at 7 s, or what is wrong with a line.
@@ -277,13 +291,13 @@ mod tests {
                 "gon 2",
             ]),
             [
-                "`lugage`: found `lugage`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone` or `end`, Some(\"luggage\")",
+                "`lugage`: found `lugage`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone`, `end`, `lose`, `violate`, `delay`, `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`, Some(\"luggage\")",
                 "`landin`: found `landin`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"landing\")",
                 "`att`: found `att`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"at\")",
                 "`hello`: found `hello`, expected an event, `at`, `from` or `then` at the start of a line, None",
                 "`random`: found `random`, expected a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`, None",
                 "`landing`: this line never ends, but a line of `--events` has to end, None",
-                "`landing`: found more than 100000 events in one line of `--events`, None",
+                "`landing`: found more than 100000 events in a line of `--events`, None",
                 "`(3,1)..(3,1)`: found (3,1), where the luggage starts: expected another block, None",
                 "`quickly`: found `quickly`, expected the end of the line, or `;` before the next event, None",
                 "`ü`: found `ü`, expected an event, `at`, `from` or `then` at the start of a line, None",

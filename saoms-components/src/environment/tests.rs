@@ -125,7 +125,8 @@ fn a_line_of_very_many_words_is_one_mistake() {
 
 #[test]
 fn every_wrong_line_says_where_and_why() {
-    let kinds = "`luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone` or `end`";
+    let kinds = "`luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone`, `end`, `lose`, `violate`, `delay`, \
+        `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`";
     let block = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
     let robot = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
     let time = "a time such as `6s` or `500ms`";

@@ -8,6 +8,9 @@ use saoms_api::{Message, Time, Topic, builtin_interfaces};
 use crate::grid::{Block, Map};
 use crate::validation::{MessageValidator, Problem, Validate, of_robot};
 
+/// The greatest factor of a fault: a robot that is slower stands still, and a battery that drains faster is empty.
+pub(crate) const MOST_FACTOR: f64 = 1000.0;
+
 /// Robots that become slow.
 ///
 /// Published by scenarios and from outside; read by the world.
@@ -18,8 +21,8 @@ pub const SLOW: Topic<Slow> = Topic::event("SLOWTOPIC");
 pub struct Slow {
     /// Number of the robot.
     pub robot: u32,
-    /// How many times as long a move, collecting and depositing take, at least 1. What is over within a period of the
-    /// robot otherwise takes so many periods.
+    /// How many times as long a move, collecting and depositing take, from 1 to 1000. What is over within a period of
+    /// the robot otherwise takes so many periods.
     pub factor: f64,
     /// How long the robot is slow; without it, to the end of the run.
     pub lasting: Option<builtin_interfaces::Duration>,
@@ -37,7 +40,7 @@ pub struct Drain {
     pub robot: u32,
     /// What the battery loses at once, in percent of a full one.
     pub percent: Option<f64>,
-    /// How many times as much everything takes that discharges it, at least 1.
+    /// How many times as much everything takes that discharges it, from 1 to 1000.
     pub factor: Option<f64>,
     /// How long that takes more; without it, to the end of the run.
     pub lasting: Option<builtin_interfaces::Duration>,

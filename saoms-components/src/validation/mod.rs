@@ -94,7 +94,7 @@ impl MessageValidator {
         let (sender, what, which) = (name(header.sender), M::WHAT, message.about());
         let from = match sender.as_str() {
             // No component has this name.
-            "`(outside)`" => "an event from outside (`--events`)".to_owned(),
+            "`(outside)`" => "an event from outside".to_owned(),
             _ => format!("what {sender} sent"),
         };
         let problem = match problem {

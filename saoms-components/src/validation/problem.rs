@@ -1,7 +1,7 @@
 use std::fmt;
 
 use crate::grid::{Block, Map};
-use crate::messages::{EventLuggage, LuggageStage, is_visit};
+use crate::messages::{EventLuggage, LuggageStage, MOST_FACTOR, is_visit};
 
 /// Reason for rejecting a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub(crate) enum Problem {
     Jump { from: Block, to: Block },
     /// A battery level that is no percentage.
     Battery { percent: f64 },
-    /// A factor by which nothing takes longer.
+    /// A factor by which nothing takes longer, or all too long.
     Factor { factor: f64 },
     /// A period that no component has.
     Period { micros: u64 },
@@ -57,8 +57,10 @@ impl Problem {
 
     /// Checks a factor by which something takes longer, or more.
     pub(crate) fn of_factor(factor: f64) -> Result<(), Problem> {
-        let is_one = factor.is_finite() && factor >= 1.0;
-        if is_one { Ok(()) } else { Err(Problem::Factor { factor }) }
+        match (1.0..=MOST_FACTOR).contains(&factor) {
+            true => Ok(()),
+            false => Err(Problem::Factor { factor }),
+        }
     }
 
     /// Checks a request to bring luggage, or to visit blocks.
@@ -109,7 +111,7 @@ impl fmt::Display for Problem {
                 write!(formatter, "found a battery of {percent} %, expected 0 to 100")
             }
             Problem::Factor { factor } => {
-                write!(formatter, "found the factor {factor}, expected 1 or more")
+                write!(formatter, "found the factor {factor:?}, expected 1 to {MOST_FACTOR}")
             }
             Problem::Period { micros } => {
                 write!(formatter, "found a period of {micros} us, expected at most a day")

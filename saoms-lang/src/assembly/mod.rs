@@ -3,6 +3,7 @@
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
 mod fault_subjects;
+mod fleet_view;
 mod run_policy;
 mod task;
 pub(crate) mod topic_list;
@@ -16,6 +17,8 @@ use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 pub use fault_subjects::fault_subjects;
+pub(crate) use fleet_view::class_view;
+pub use fleet_view::seen;
 pub use run_policy::{AlertCommand, AlertUrl, RunPolicy};
 pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_list::TopicList;

@@ -100,7 +100,7 @@ impl Control {
     ) -> Option<ControlServer> {
         let Control { places, description, log, topics } = self;
         let place = description.url.clone().zip(description.token_file.clone());
-        let languages = Mutex::new(Languages::of("(operators)", numbers));
+        let languages = Mutex::new(Languages::of(("(operators)", "a line of an operator"), numbers));
         let fleet = handle.clone();
         let send = move |line: &str| {
             let sent = languages.lock().unwrap_or_else(PoisonError::into_inner).send(line, &fleet)?;

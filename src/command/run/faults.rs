@@ -6,10 +6,10 @@ use std::path::Path;
 use saoms_api::Time;
 use saoms_api::event::EventCall;
 use saoms_api::event::fault::{FaultCall, FaultSubjects};
-use saoms_api::extension::{EventContent, LineFault, TimedMessage};
+use saoms_api::extension::{EventContent, EventLanguage, LineFault, TimedMessage};
 use saoms_api::host::format_duration;
 use saoms_core::schedule::{Handle, Takers};
-use saoms_lang::assembly::{Assembly, fault_subjects};
+use saoms_lang::assembly::{Assembly, fault_subjects, seen};
 use saoms_lang::load::missing_file_help;
 
 use super::events::{Languages, Numbers, happen, shown, site_of};
@@ -48,6 +48,14 @@ impl Known {
 
     fn subjects(&self, site: &str) -> FaultSubjects {
         fault_subjects(self.assembly.components.iter().filter(|spec| site.is_empty() || spec.site == *site))
+    }
+
+    /// Judges what a line says of the fleet, whatever is drawn of its ranges.
+    fn judge_line(&self, text: &str, first: &PlannedEvent) -> Result<(), LineFault> {
+        let is_of_classes = first.message.content == EventContent::Raised && !FaultCall::is_one(&first.message.text);
+        let language = EventLanguage::linked().find(|one| is_of_classes && one.topic.name == first.topic);
+        let events = self.takers.events();
+        language.map_or(Ok(()), |one| seen(&self.assembly, &first.site, |fleet| (one.judge)(fleet, events, text)))
     }
 
     /// Judges what one event names.
@@ -93,7 +101,7 @@ impl FaultScript {
     /// # Errors
     /// What is wrong with each line, for people.
     pub(in crate::command) fn events(&self, known: &Known, seed: u64) -> Result<Vec<PlannedEvent>, Vec<String>> {
-        let mut languages = Languages::of("(faults)", &Numbers::new(seed));
+        let mut languages = Languages::of(("(faults)", "a line of `--faults`"), &Numbers::new(seed));
         let (mut all, mut wrong) = (Vec::new(), Vec::new());
         for (number, line) in (1..).zip(self.text.lines()) {
             let (site, text) = site_of(line);
@@ -109,6 +117,8 @@ impl FaultScript {
                 // The others differ in their random values alone.
                 let judged = planned.first().map_or(Ok(()), |first| known.judge(first));
                 judged.map_err(|fault| placed(line, &planned, fault))?;
+                let judged = planned.first().map_or(Ok(()), |first| known.judge_line(text, first));
+                judged.map_err(|fault| fault.moved(before))?;
                 Ok(planned)
             });
             match planned {

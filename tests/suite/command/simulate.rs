@@ -117,6 +117,16 @@ fn wrong_input_starts_nothing() {
     let (code, told, why) = simulate(&folder, &["--faults", "faults.txt"]);
     assert_eq!((code, told.as_str()), (Some(2), ""), "{why}");
     assert!(why.contains("faults.txt:1:12: found `200 %`") && why.ends_with("1 error: nothing was started\n"), "{why}");
+    let endless = "from 1s every 1s lose 20 %\nfrom 1s every 1ms until 10min landing 2\n";
+    fs::write(folder.join("faults.txt"), endless).unwrap();
+    let (code, _, why) = simulate(&folder, &["--faults", "faults.txt"]);
+    assert_eq!(code, Some(2), "{why}");
+    for line in [
+        "this line never ends, but a line of `--faults` has to end\n",
+        "found more than 100000 events in a line of `--faults`\n",
+    ] {
+        assert!(why.contains(line), "{why}");
+    }
     let (code, _, why) = simulate(&folder, &["--faults", "falts.txt"]);
     assert_eq!(code, Some(2), "{why}");
     let output = saoms_in(&folder, &["simulate", "-"]);

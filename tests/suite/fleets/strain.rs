@@ -157,12 +157,64 @@ fn faults_of_robots_that_do_not_exist_are_told_and_counted() {
     assert_eq!(output.status.code(), Some(0));
     let report: Value = serde_json::from_str(&fs::read_to_string(folder.join("r.json")).unwrap()).unwrap();
     assert_eq!(report["faults"]["ignored"], 2, "{report}");
-    // A value that means nothing is refused before anything starts.
-    fs::write(folder.join("faults.txt"), "at 1s slow robot=1 factor=0.5\n").unwrap();
+}
+
+#[test]
+fn a_fault_that_means_nothing_is_refused_at_its_place_before_anything_starts() {
+    let folder = empty_folder("strain-refused");
+    fs::write(folder.join("hall.composite"), hall("at 1s luggage (3,1) to (3,9)", "")).unwrap();
+    let faults = "at 1s slow robot=1 factor=0.5
+at 1s slow robot=1 factor=1e308
+at 1s slow robot=1
+at 1s outage charger=(5,5) lasting=3s
+at 1s outage charger=(0,0)..(0,9)
+at 1s outage charger=(3,0)..(5,9)
+at 2s for 0s lose 20 %
+at 2s for 0 ms stall Robot1
+at 2s loose 20 %
+at 2s storm
+";
+    fs::write(folder.join("faults.txt"), faults).unwrap();
     let output = saoms_in(&folder, &["run", "hall.composite", "--virtual", "--faults", "faults.txt"]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(told.contains("faults.txt:1:27: field `factor`: found `0.5`, expected a number of at least 1"), "{told}");
+    expect_test::expect![[r#"
+        error: faults.txt:1:27: field `factor`: found `0.5`, expected a number from 1 to 1000
+            at 1s slow robot=1 factor=0.5
+                                      ^^^
+        error: faults.txt:2:27: field `factor`: found `1e308`, expected a number from 1 to 1000
+            at 1s slow robot=1 factor=1e308
+                                      ^^^^^
+        error: faults.txt:3:7: event `slow` needs its fields: `factor` is missing
+            at 1s slow robot=1
+                  ^^^^
+            = help: add `factor=1.5`, with a number for `factor`
+        error: faults.txt:4:22: no robot has its charger at (5,5)
+            at 1s outage charger=(5,5) lasting=3s
+                                 ^^^^^
+            = help: the chargers are at `(0,1)`, `(0,2)`
+        error: faults.txt:6:22: no robot has its charger at (3,0)..(5,9)
+            at 1s outage charger=(3,0)..(5,9)
+                                 ^^^^^^^^^^^^
+            = help: the chargers are at `(0,1)`, `(0,2)`
+        error: faults.txt:7:11: found `0s`, expected a time above 0: a fault that lasts no time does nothing
+            at 2s for 0s lose 20 %
+                      ^^
+            = help: write a time such as `for 2s`
+        error: faults.txt:8:11: found `0 ms`, expected a time above 0: a fault that lasts no time does nothing
+            at 2s for 0 ms stall Robot1
+                      ^^^^
+            = help: write a time such as `for 2s`
+        error: faults.txt:9:7: found `loose`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone`, `end`, `drain`, `outage`, `slow`, `lose`, `violate`, `delay`, `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`; did you mean `lose`?
+            at 2s loose 20 %
+                  ^^^^^
+        error: faults.txt:10:7: found `storm`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone`, `end`, `drain`, `outage`, `slow`, `lose`, `violate`, `delay`, `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`
+            at 2s storm
+                  ^^^^^
+
+        9 errors: nothing was started
+    "#]]
+    .assert_eq(&told);
 }
 
 #[test]
@@ -177,7 +229,7 @@ fn robots_and_chargers_that_a_scenario_names_wrongly_are_mistakes_at_their_place
         "error[S5005]: the fleet has no robot 9\n",
         "error[S5005]: the fleet has no robot from 3 to 4\n",
         "error[S5026]: no robot has its charger at (5,5)\n",
-        "field `factor`: found `0.2`, expected a number of at least 1\n",
+        "field `factor`: found `0.2`, expected a number from 1 to 1000\n",
         "event `drain` says neither what the battery loses at once, nor how much faster it drains\n",
         "= help: the chargers are at `(0,1)`, `(0,2)`\n",
     ] {

@@ -22,7 +22,7 @@ impl FaultCall {
     /// The first word that is wrong.
     pub fn read(text: &str) -> Result<FaultCall, LineFault> {
         let mut words = Words { text, words: words(text), at: 0 };
-        let lasting = words.take(LASTING).map(|_| words.time()).transpose()?;
+        let lasting = words.take(LASTING).map(|_| words.lasting()).transpose()?;
         let expected = format!("a fault: `{}`", FAULTS.join("`, `"));
         let first = words.next(&expected)?;
         let word = words.text(&first);
@@ -175,6 +175,18 @@ impl<'t> Words<'t> {
             let fault = LineFault::new(bytes, message);
             meant_duration(written).map_or(fault.clone(), |meant| fault.instead(meant))
         })
+    }
+
+    /// How long a fault lasts, behind `for`.
+    fn lasting(&mut self) -> Result<Duration, LineFault> {
+        let first = self.at;
+        let lasting = self.time()?;
+        if lasting.is_zero() {
+            let bytes = self.words[first].start..self.words[self.at - 1].end;
+            let fault = self.wrong(bytes, "a time above 0: a fault that lasts no time does nothing");
+            return Err(fault.help(format!("write a time such as `{LASTING} 2s`")));
+        }
+        Ok(lasting)
     }
 
     fn delay(&mut self) -> Result<FaultKind, LineFault> {

@@ -4,6 +4,8 @@ use saoms_api::event::{Argument, Event, EventCall};
 use saoms_api::extension::LineFault;
 use saoms_api::host::parse_duration;
 
+use crate::messages::MOST_FACTOR;
+
 /// The classes whose events these are; others may have events with these names.
 const CLASSES: [&str; 2] = ["saoms.World", "saoms.Robot"];
 
@@ -30,7 +32,7 @@ pub(super) fn check(event: &Event, call: &EventCall) -> Result<(), LineFault> {
         }
     }
     in_range(given("percent"), (0.0, 100.0), "from 0 to 100, in percent of a full battery")?;
-    in_range(given("factor"), (1.0, f64::MAX), "of at least 1")?;
+    in_range(given("factor"), (1.0, MOST_FACTOR), &format!("from 1 to {MOST_FACTOR}"))?;
     match given("lasting") {
         Some(lasting)
             if lasting.ends().iter().any(|end| parse_duration(&end.text).is_ok_and(|time| time.is_zero())) =>
@@ -85,15 +87,19 @@ mod tests {
         }
         assert_eq!(
             judged("slow robot=2 factor=0.5"),
-            "`0.5`: field `factor`: found `0.5`, expected a number of at least 1"
+            "`0.5`: field `factor`: found `0.5`, expected a number from 1 to 1000"
         );
         assert_eq!(
             judged("slow robot=2 factor=0.5..3.0"),
-            "`0.5`: field `factor`: found `0.5`, expected a number of at least 1"
+            "`0.5`: field `factor`: found `0.5`, expected a number from 1 to 1000"
         );
         assert_eq!(
             judged("drain robot=2 percent=130"),
             "`130`: field `percent`: found `130`, expected a number from 0 to 100, in percent of a full battery"
+        );
+        assert_eq!(
+            judged("drain robot=2 factor=1e308"),
+            "`1e308`: field `factor`: found `1e308`, expected a number from 1 to 1000"
         );
         assert!(judged("drain robot=2").starts_with("`drain`: event `drain` says neither"));
         assert_eq!(

@@ -1,4 +1,5 @@
 use saoms_api::event::Events;
+use saoms_api::event::fault::FAULTS;
 
 use super::event::KINDS;
 
@@ -39,9 +40,9 @@ impl<'a> Vocabulary<'a> {
         own.chain(self.events.into_iter().flat_map(Events::names))
     }
 
-    /// These names in words, for messages.
+    /// These names and the words of faults, which each fleet plays, for messages.
     pub(super) fn expected(self) -> String {
-        let mut names: Vec<String> = self.names().map(|name| format!("`{name}`")).collect();
+        let mut names: Vec<String> = self.names().chain(FAULTS).map(|name| format!("`{name}`")).collect();
         match names.pop() {
             Some(last) if !names.is_empty() => format!("{} or {last}", names.join(", ")),
             Some(only) => only,

@@ -8,3 +8,5 @@ pub(crate) mod no_work;
 pub(super) mod strain;
 pub(super) mod unknown_robot;
 pub(super) mod unserved;
+
+pub(crate) use strain::judge_outage;

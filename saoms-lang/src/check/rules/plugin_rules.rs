@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use saoms_api::rule::{ClassView, ComponentView, FleetView};
 
-use crate::assembly::{LoopSpec, on_bus};
+use crate::assembly::{self, LoopSpec, on_bus};
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Member, class_index::ClassIndex};
 use crate::check::properties::findings::{Subject, diagnostic};
@@ -299,17 +299,5 @@ fn class_view<'s>(
 ) -> Rc<ClassView<'s>> {
     let class: &'s RegisteredClass = class.class;
     let loops: &'s [LoopSpec] = check.loops.as_ref().map_or(&[], |loops| &loops.specs);
-    let make = || {
-        let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
-        let published = class.declaration().publishes.iter().chain(of_loops);
-        Rc::new(ClassView {
-            name: &class.declaration().name,
-            declaration: class.declaration_json(),
-            extends: class.extended_json().collect(),
-            publishes: published.map(|topic| topic.name.as_str()).collect(),
-            loops: loops.iter().map(|one| one.class.name()).collect(),
-            takes: class.declaration().events().collect(),
-        })
-    };
-    Rc::clone(known.entry((class, loops.as_ptr())).or_insert_with(make))
+    Rc::clone(known.entry((class, loops.as_ptr())).or_insert_with(|| Rc::new(assembly::class_view(class, loops))))
 }

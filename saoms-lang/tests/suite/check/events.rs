@@ -184,7 +184,7 @@ fn a_topic_by_which_an_event_comes_needs_no_publisher() {
 fn an_event_has_the_same_fields_for_all_and_is_no_word_of_a_language() {
     let all = component("A", "Hall", "") + &component("B", "Tower", "") + &component("C", "Tower", "");
     expect_test::expect![[r#"
-        3:18-19 error S4017: component `B` takes the event `fire` with the fields `height=0.5`, and class `example.Hall` with the fields `size=1`, `cause="text"`
+        3:18-19 error S4017: component `B` takes the event `fire` with the fields `height=1.5`, and class `example.Hall` with the fields `size=1`, `cause="text"`
           2:18-19 a component of that class
           help: an event has the same fields for all classes; give it another name under `takes` in one of them
         5:18-19 error S4017: component `D` takes the event `halt`, which is a reserved word of the `example` language

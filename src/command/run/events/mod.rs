@@ -46,7 +46,7 @@ impl Events {
     /// Why it cannot be read.
     pub(super) fn open(path: &Path, numbers: &Numbers) -> Result<Events, Unreadable> {
         let lines = input::open(path)?;
-        Ok(Events { lines, languages: Languages::of("(outside)", numbers), number: 0 })
+        Ok(Events { lines, languages: Languages::of(("(outside)", "a line of `--events`"), numbers), number: 0 })
     }
 
     /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
@@ -158,8 +158,10 @@ pub(super) enum Sent {
 }
 
 impl Languages {
-    pub(super) fn of(name: &'static str, Numbers { seed, numbers }: &Numbers) -> Languages {
-        let source = || EventSource { name, seed: *seed, numbers: Arc::clone(numbers) };
+    /// The languages for a source of this name, from which its chance follows; the second text is what messages call
+    /// one of its lines.
+    pub(super) fn of((name, line): (&'static str, &'static str), Numbers { seed, numbers }: &Numbers) -> Languages {
+        let source = || EventSource { name, line, seed: *seed, numbers: Arc::clone(numbers) };
         let reader = |one: &EventLanguage| (one.topic.name, (one.new)(source()));
         Languages { readers: EventLanguage::linked().map(reader).collect() }
     }
@@ -354,7 +356,11 @@ mod tests {
     fn lines_that_are_too_long_are_read_to_their_end() {
         let text = format!("one\n{}\nthree", "x".repeat(3 * LONGEST));
         let lines = Box::new(io::Cursor::new(text));
-        let mut events = Events { lines, languages: Languages::of("(outside)", &Numbers::new(0)), number: 0 };
+        let mut events = Events {
+            lines,
+            languages: Languages::of(("(outside)", "a line of `--events`"), &Numbers::new(0)),
+            number: 0,
+        };
         let (mut line, mut lengths) = (Vec::new(), Vec::new());
         while events.next(&mut line).unwrap() {
             lengths.push(line.len());
