@@ -11,6 +11,7 @@ mod battery;
 mod catch_up;
 pub mod classic;
 mod console;
+mod gain;
 mod hardware_client;
 mod job;
 mod knowledge;

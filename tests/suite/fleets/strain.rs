@@ -144,6 +144,9 @@ fn a_robot_without_another_charger_waits_for_its_own() {
         let robot = format!(r#"<property name="battery" value="45"/><property name="policy" value="{policy}"/>"#);
         let report = run(scenario, &robot);
         assert_delivered(&report);
+        let log = report.log();
+        assert!(log.contains("Robot1: battery gains nothing at its charger at (0,1): it stays at "), "{policy}: {log}");
+        assert!(number(&report, "chargers.without_gain") >= 1, "{policy}");
     }
 }
 

@@ -1,6 +1,7 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, info, record};
 
 use crate::robot::RobotKnowledge;
+use crate::robot::gain::Gain;
 
 /// Battery level at which a robot has to charge, in percent.
 const LOW: f64 = 35.0;
@@ -13,7 +14,10 @@ const LOW: f64 = 35.0;
     senses("block", "chargeBlock", "chargeAt", "charging"),
     effects("busy", "readyToGoUnderCharge")
 )]
-pub struct ClassicBattery;
+pub struct ClassicBattery {
+    /// What the battery gains at the charger.
+    gain: Gain,
+}
 
 /// State of the battery.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +61,9 @@ impl Loop for ClassicBattery {
     type Symptom = ClassicBatterySymptom;
     type Decision = ClassicBatteryDecision;
 
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        // It waits there, whatever comes of it.
+        let _ = self.gain.note_aloud(knowledge, context);
         if knowledge.variables.in_charge {
             knowledge.variables.busy |= knowledge.charging;
         }

@@ -1,7 +1,7 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record, warn};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record};
 
-use super::gain::Gain;
 use crate::grid::{Block, UNREACHABLE};
+use crate::robot::gain::Gain;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::{RobotKnowledge, Trouble};
 
@@ -384,11 +384,7 @@ impl SafeBattery {
         context: &mut Context<'_>,
     ) -> Option<SafeBatterySymptom> {
         let (charger, battery) = (knowledge.charge_block, knowledge.charge);
-        let is_first = self.gain.note(knowledge, context)?;
-        if is_first {
-            context.count("chargers.without_gain", 1);
-            warn!(context, "battery gains nothing at its charger at {charger}: it stays at {battery:.1} %");
-        }
+        let is_first = self.gain.note_aloud(knowledge, context)?;
         let needs = (knowledge.must_charge || !knowledge.is_well_charged()) && !knowledge.variables.asleep;
         let now = context.now();
         let other = needs.then(|| knowledge.charger_elsewhere(|other| self.gain.gives(other, now))).flatten();

@@ -15,7 +15,6 @@ mod critical;
 mod dead_end;
 mod energy;
 mod event_luggage;
-mod gain;
 mod gripper;
 mod leg;
 mod pace;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::{Context, Field, Time};
+use saoms_api::{Context, Field, Time, warn};
 
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
@@ -21,7 +21,7 @@ const MOST: usize = 64;
 
 /// What the battery gains at the charger.
 #[derive(Clone, Debug, Default, Field)]
-pub(super) struct Gain {
+pub(in crate::robot) struct Gain {
     /// Battery level in the last execution, in percent.
     level: f64,
     /// Number of executions without a gain, and their beginning.
@@ -41,7 +41,7 @@ struct DeadCharger {
 impl Gain {
     /// Notes the level of an execution. `None` while the battery gains or has none to gain, or it is too early to tell;
     /// true for the first time that it is known, and false now and then from then on.
-    pub(super) fn note(&mut self, knowledge: &RobotKnowledge, context: &Context<'_>) -> Option<bool> {
+    pub(in crate::robot) fn note(&mut self, knowledge: &RobotKnowledge, context: &Context<'_>) -> Option<bool> {
         let (charger, now, before) = (knowledge.charge_block, context.now(), self.level);
         self.level = knowledge.charge;
         if !knowledge.is_at_charger() || !knowledge.charging {
@@ -72,8 +72,23 @@ impl Gain {
         Some(is_first)
     }
 
+    /// The same; the first time is said and counted, too.
+    pub(in crate::robot) fn note_aloud(
+        &mut self,
+        knowledge: &RobotKnowledge,
+        context: &mut Context<'_>,
+    ) -> Option<bool> {
+        let is_first = self.note(knowledge, context)?;
+        if is_first {
+            let (charger, battery) = (knowledge.charge_block, knowledge.charge);
+            context.count("chargers.without_gain", 1);
+            warn!(context, "battery gains nothing at its charger at {charger}: it stays at {battery:.1} %");
+        }
+        Some(is_first)
+    }
+
     /// False if a charger gave nothing not long ago.
-    pub(super) fn gives(&self, charger: Block, now: Time) -> bool {
+    pub(in crate::robot) fn gives(&self, charger: Block, now: Time) -> bool {
         self.dead.iter().all(|one| one.charger != charger || one.until <= now)
     }
 }
