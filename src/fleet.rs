@@ -4,6 +4,7 @@ use std::env;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
+use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::{Diagnostic, Severity};
 use saoms_lang::project::{Compilation, Compilations, INPUT, Project};
 use saoms_lang::source::Sources;
@@ -13,7 +14,7 @@ use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::output::Outputs;
+use crate::output::{Outputs, eprint};
 use crate::plugins::{CommandClasses, search, usable};
 
 /// The project of a command line.
@@ -40,6 +41,18 @@ pub(crate) fn compiled<T>(
     usable(&compilation.problems)?;
     Outputs::beside(files_read(&compilation, arguments)).with_streams()?;
     Ok(compilation)
+}
+
+/// True if a fleet has components. One without any is reported; `to_do` is what is done with a fleet, such as `run`.
+pub(crate) fn has_components(assembly: &Assembly, to_do: &str) -> bool {
+    if assembly.components.is_empty() {
+        eprint(&format!(
+            "error: this fleet has no components: there is nothing to {to_do}\n  = help: add a `<component name=\"...\">` \
+            to its composite, or name another composite; `saoms new site` makes one to start from\n\n1 error: nothing was \
+            started\n"
+        ));
+    }
+    !assembly.components.is_empty()
 }
 
 /// The files that a compilation read, of composites and of plugins: no output may go there.

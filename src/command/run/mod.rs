@@ -37,7 +37,7 @@ use saoms_lang::project::INPUT;
 
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format, duration};
-use crate::fleet::{DiagnosticReport, compiled, files_read};
+use crate::fleet::{DiagnosticReport, compiled, files_read, has_components};
 use crate::guard::has_own_end;
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use alerts::AlertDelivery;
@@ -405,13 +405,7 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.iter().chain(&arguments.faults).cloned());
     let assembly = compilation.output?;
-    if assembly.components.is_empty() {
-        eprint(
-            "error: this fleet has no components: there is nothing to run\n  = help: add a `<component name=\"...\">` to its composite, or name another composite; `saoms new site` makes one to start from\n\n1 error: nothing was started\n",
-        );
-        return None;
-    }
-    Some((assembly, read))
+    has_components(&assembly, "run").then_some((assembly, read))
 }
 
 fn seed(text: &str) -> Result<u64, String> {

@@ -19,7 +19,7 @@ use saoms_lang::project::INPUT;
 use super::run::faults::{FaultScript, Known, report_wrong};
 use crate::Exit;
 use crate::arguments::{FleetArguments, duration, setting_of};
-use crate::fleet::{DiagnosticReport, compiled};
+use crate::fleet::{DiagnosticReport, compiled, has_components};
 use crate::output::{counted, eprint, eprint_coloured, print, print_json};
 use compare::Comparison;
 use one::Simulation;
@@ -194,6 +194,9 @@ fn simulation(arguments: &SimulateArguments, fleet: &FleetArguments) -> Result<S
         eprint(&format!("\n{}: nothing was started\n", counted(errors, "error")));
         return Err(Exit::WrongInput);
     };
+    if !has_components(&assembly, "simulate") {
+        return Err(Exit::WrongInput);
+    }
     let known = Known::of(&assembly);
     let script = match &arguments.faults {
         Some(path) => Some(FaultScript::read(path).ok_or(Exit::WrongInput)?),

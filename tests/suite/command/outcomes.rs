@@ -165,15 +165,13 @@ fn a_scenario_with_a_long_pause_is_played_to_its_end() {
 fn a_fleet_without_components_is_refused() {
     let empty =
         r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="e" targetNamespace="urn:e"/>"#;
-    for options in [&[][..], &["--virtual"]] {
-        let file = empty_folder("outcome-empty").join("empty.composite");
-        fs::write(&file, empty).unwrap();
-        let output = saoms(&[&["run", file.to_str().unwrap()], options].concat());
+    let file = empty_folder("outcome-empty").join("empty.composite");
+    fs::write(&file, empty).unwrap();
+    let file = file.to_str().unwrap();
+    for arguments in [&["run", file][..], &["run", file, "--virtual"], &["simulate", file, "--seeds", "2"]] {
+        let output = saoms(arguments);
         assert_eq!(code(&output), 2, "{}", text(&output));
-        assert!(
-            text(&output).contains("error: this fleet has no components: there is nothing to run"),
-            "{}",
-            text(&output)
-        );
+        let why = format!("error: this fleet has no components: there is nothing to {}\n", arguments[0]);
+        assert!(text(&output).contains(&why), "{}", text(&output));
     }
 }
