@@ -3,6 +3,7 @@
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::os::fd::AsRawFd;
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use super::log::{LogFile, ReplaceError};
@@ -23,9 +24,18 @@ pub(super) struct DiskFile {
     _lock: File,
 }
 
+/// A log that was opened.
+pub(super) struct Opened {
+    pub(super) file: DiskFile,
+    /// What it held.
+    pub(super) bytes: Vec<u8>,
+    /// False if it was made.
+    pub(super) was_there: bool,
+}
+
 impl DiskFile {
-    /// Opens the log of a folder, and makes both where they are missing. Gives what the log holds.
-    pub(super) fn open(folder: &Path) -> Result<(DiskFile, Vec<u8>), StoreError> {
+    /// Opens the log of a folder, and makes both where they are missing.
+    pub(super) fn open(folder: &Path) -> Result<Opened, StoreError> {
         let failed = |doing: &'static str, path: &Path| {
             let path = path.to_owned();
             move |error| StoreError::System { doing, path, error }
@@ -37,6 +47,12 @@ impl DiskFile {
             let mut entries = fs::read_dir(folder).map_err(failed("be read", folder))?;
             if entries.next().is_some() {
                 return Err(StoreError::Foreign { folder: folder.to_owned() });
+            }
+        }
+        // Opening a pipe, or reading it, would wait for somebody else.
+        for path in [&log, &lock, &folder.join(NEW)] {
+            if path.metadata().is_ok_and(|about| !about.is_file()) {
+                return Err(StoreError::NoFile { path: path.clone() });
             }
         }
         let mut options = OpenOptions::new();
@@ -55,7 +71,7 @@ impl DiskFile {
         }
         let bytes = fs::read(&log).map_err(failed("be read", &log))?;
         // A program that ended before it had written the first line had committed nothing.
-        if bytes.len() < group::HEAD.len() && group::HEAD.starts_with(&bytes) {
+        if group::is_begun(&bytes) {
             let begin = |file: &mut File| {
                 file.set_len(0)?;
                 file.write_all(group::HEAD)?;
@@ -64,7 +80,8 @@ impl DiskFile {
             };
             begin(&mut file).map_err(failed("be written", &log))?;
         }
-        Ok((DiskFile { folder: folder.to_owned(), file, _lock: locked }, bytes))
+        let file = DiskFile { folder: folder.to_owned(), file, _lock: locked };
+        Ok(Opened { file, bytes, was_there: !is_new })
     }
 }
 
@@ -91,6 +108,18 @@ impl LogFile for DiskFile {
 
     fn sync(&mut self) -> io::Result<()> {
         self.file.sync_data()
+    }
+
+    fn look(&self) -> io::Result<()> {
+        let (path, own) = (self.folder.join(LOG), self.file.metadata()?);
+        match fs::metadata(&path) {
+            Ok(there) if (there.dev(), there.ino()) == (own.dev(), own.ino()) => Ok(()),
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+            _ => {
+                let path = path.display();
+                Err(io::Error::other(format!("`{path}` is not there any more, or is another file")))
+            }
+        }
     }
 
     fn cut(&mut self, size: u64) -> io::Result<()> {

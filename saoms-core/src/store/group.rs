@@ -8,6 +8,12 @@ use crate::hash::fold;
 
 /// First line of a log.
 pub(super) const HEAD: &[u8] = b"saoms-store 1\n";
+
+/// True if a log has no more than a part of its first line.
+pub(super) fn is_begun(bytes: &[u8]) -> bool {
+    bytes.len() < HEAD.len() && HEAD.starts_with(bytes)
+}
+
 /// What each first line begins with, in every version.
 pub(super) const HEAD_OF_ALL: &[u8] = b"saoms-store ";
 

@@ -8,6 +8,8 @@ pub(super) trait LogFile: Send {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// Waits until all that was added is on the disk.
     fn sync(&mut self) -> io::Result<()>;
+    /// Looks whether the file is still where it was opened: the next start reads it there.
+    fn look(&self) -> io::Result<()>;
     /// Removes what comes after so many bytes.
     fn cut(&mut self, size: u64) -> io::Result<()>;
     /// Has the disk reserve the space up to so many bytes.
@@ -81,6 +83,11 @@ impl<F: LogFile> Log<F> {
         self.complaint.take()
     }
 
+    /// Looks whether the next start will find what is kept.
+    pub(super) fn look(&self) -> io::Result<()> {
+        self.file.look()
+    }
+
     /// Reserves space for what comes. False if the disk has none left beyond what is reserved already.
     pub(super) fn reserve(&mut self) -> bool {
         let Some(reserved) = self.reserved else { return true };
@@ -111,7 +118,7 @@ impl<F: LogFile> Log<F> {
             self.reserved = self.reserved.map(|_| 0);
             return Err(CommitError::Full(error));
         }
-        self.file.sync().map_err(CommitError::Failed)?;
+        self.file.sync().and_then(|()| self.file.look()).map_err(CommitError::Failed)?;
         self.size += self.buffer.len() as u64;
         self.number += 1;
         changes.iter().for_each(|change| self.contents.apply(change));

@@ -17,7 +17,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 pub(crate) use contents::{Change, Contents, Entries};
-use disk::DiskFile;
+use disk::{DiskFile, Opened};
 use log::Log;
 pub(crate) use thread::{Batch, StoreEvents, StoreQueue, write};
 
@@ -63,6 +63,11 @@ pub enum StoreError {
         /// The first byte that is wrong.
         at: usize,
     },
+    /// Something in the folder is no regular file.
+    NoFile {
+        /// What it is.
+        path: PathBuf,
+    },
     /// The system refuses something.
     System {
         /// What could not be done, as `be read`.
@@ -80,10 +85,10 @@ impl Store {
     /// # Errors
     /// See [`StoreError`]. Nothing was changed but for a missing folder.
     pub fn open(folder: &Path) -> Result<Store, StoreError> {
-        let (mut file, bytes) = DiskFile::open(folder)?;
+        let Opened { mut file, bytes, was_there } = DiskFile::open(folder)?;
         let path = folder.join(disk::LOG);
-        let is_new = bytes.len() < group::HEAD.len() && group::HEAD.starts_with(&bytes);
-        if !is_new && !bytes.starts_with(group::HEAD) {
+        let is_begun = group::is_begun(&bytes);
+        if !is_begun && !bytes.starts_with(group::HEAD) {
             let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
             let line = String::from_utf8_lossy(&line[..line.len().min(40)]).into_owned();
             return Err(StoreError::Version { log: path, line });
@@ -98,13 +103,22 @@ impl Store {
             let cut = file.cut(read.size as u64).and_then(|()| file.sync());
             cut.map_err(|error| StoreError::System { doing: "be cut", path: path.clone(), error })?;
         }
-        let repaired = (torn > 0).then(|| {
-            format!(
-                "the last {torn} bytes of `{}` are no whole group, as after a failure of the power, and are removed: they \
-                 were never committed, unless somebody changed the file",
-                path.display()
-            )
-        });
+        let repaired = if is_begun && was_there {
+            Some(format!(
+                "`{}` has {} bytes, which are no whole first line, as after a failure of the power before anything was \
+                 kept: the fleet begins without a state. Restore the file from a backup if somebody cut it",
+                path.display(),
+                bytes.len()
+            ))
+        } else {
+            (torn > 0).then(|| {
+                format!(
+                    "the last {torn} bytes of `{}` are no whole group, as after a failure of the power, and are removed: \
+                     they were never committed, unless somebody changed the file",
+                    path.display()
+                )
+            })
+        };
         Ok(Store { log: Log::new(file, read.size as u64, read.number, read.contents), repaired })
     }
 
@@ -153,6 +167,9 @@ impl fmt::Display for StoreError {
                  the folder from a backup, or name another one: the fleet begins without its state then",
                 log.display()
             ),
+            StoreError::NoFile { path } => {
+                write!(formatter, "`{}` is no regular file: remove it, or name another folder", path.display())
+            }
             StoreError::System { doing, path, error } => {
                 write!(formatter, "`{}` cannot {doing}: {error}", path.display())
             }

@@ -78,6 +78,10 @@ impl LogFile for TestFile {
         Ok(())
     }
 
+    fn look(&self) -> io::Result<()> {
+        self.call("look").map(drop)
+    }
+
     fn cut(&mut self, size: u64) -> io::Result<()> {
         self.call("cut")?.bytes.truncate(size as usize);
         Ok(())
@@ -188,6 +192,13 @@ fn a_log_that_was_changed_is_refused_and_a_torn_end_is_removed() {
         let expected = ["", "A 1 one", "A 1 one; A 2 two", "A 1 one; A 2 two; A 3 three"][groups];
         assert_eq!(opened(&whole[..end]).unwrap(), expected, "{end}");
     }
+    for end in 0..group::HEAD.len() {
+        fs::write(&log, &whole[..end]).unwrap();
+        let told = Store::open(folder.path()).unwrap().repaired().unwrap().to_owned();
+        let begins = format!("store.log` has {end} bytes, which are no whole first line, as after");
+        assert!(told.contains(&begins), "{told}");
+        assert_eq!(fs::read(&log).unwrap(), group::HEAD);
+    }
     for place in group::HEAD.len()..whole.len() {
         let mut bytes = whole.clone();
         bytes[place] ^= 0x10;
@@ -245,7 +256,7 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
     let all = "A 1 three; A 2 two";
     assert_eq!(run(TestDisk::default(), &kept), ("committed [(0, 1), (0, 2), (0, 3)]".into(), all.into(), None));
     let failure = "the state folder cannot be written: other error; what is kept from now on would be lost";
-    for fails in ["append", "sync"] {
+    for fails in ["append", "sync", "look"] {
         let (told, _, refusal) = run(TestDisk { fails: Some(fails), ..TestDisk::default() }, &kept);
         assert_eq!((told.as_str(), refusal.as_deref()), (failure, Some(failure)));
     }

@@ -1,3 +1,4 @@
+use std::io;
 use std::mem;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -49,6 +50,8 @@ struct Waiting {
 const MOST_WAITING: usize = 64 << 20;
 const ALMOST_FULL: &str = "the disk of the state folder is almost full: make space, before components that keep something have to wait for it";
 const FULL: &str = "the disk of the state folder is full: make space; components that keep something wait for it";
+/// Time after which the file of a log to which nothing is added is looked at.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(5);
 /// Pause before a full disk is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
@@ -131,7 +134,15 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
             } else if waiting.is_closed {
                 return;
             } else {
-                waiting = self.queue.wake.wait(waiting).unwrap_or_else(PoisonError::into_inner);
+                let woken = self.queue.wake.wait_timeout(waiting, BETWEEN_LOOKS);
+                let (again, timeout) = woken.unwrap_or_else(PoisonError::into_inner);
+                waiting = again;
+                if timeout.timed_out()
+                    && let Err(error) = self.log.look()
+                {
+                    drop(waiting);
+                    return self.fail(&error);
+                }
             }
         }
     }
@@ -159,9 +170,13 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
                 }
             }
         };
+        self.fail(&error);
+        Err(())
+    }
+
+    fn fail(&self, error: &io::Error) {
         let text = format!("the state folder cannot be written: {error}; what is kept from now on would be lost");
         self.queue.fail(&text, self.events);
-        Err(())
     }
 
     fn look_for_space(&mut self) {

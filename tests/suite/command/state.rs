@@ -1,6 +1,8 @@
 //! `saoms run --state`: what outlives the program.
 
+use std::ffi::CString;
 use std::fs;
+use std::os::unix::ffi::OsStrExt;
 use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
@@ -63,6 +65,23 @@ fn a_fleet_that_is_killed_goes_on_with_its_grants() {
 }
 
 #[test]
+fn a_folder_that_is_removed_while_the_fleet_runs_is_noticed() {
+    let folder = empty_folder("state-removed");
+    fs::write(folder.join("f.composite"), crossing()).unwrap();
+    let mut run = command(&["run", "f.composite", "--state", "state", "--control", "none", "--for", "3s"]);
+    let run = run.current_dir(&folder).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    while fs::metadata(folder.join("state/store.log")).map_or(0, |about| about.len()) < 500 {
+        sleep(Duration::from_millis(5));
+    }
+    fs::rename(folder.join("state"), folder.join("away")).unwrap();
+    let output = run.wait_with_output().unwrap();
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    let why = "the state folder cannot be written: `state/store.log` is not there any more, or is another file";
+    assert!(told.contains(why), "{told}");
+}
+
+#[test]
 fn a_state_that_cannot_be_used_is_refused_before_the_start() {
     let folder = empty_folder("state-refused");
     fs::write(folder.join("f.composite"), crossing()).unwrap();
@@ -79,7 +98,19 @@ fn a_state_that_cannot_be_used_is_refused_before_the_start() {
         refused(&["--state", "other"]),
         refused(&["--state", "other/notes.txt"]),
         refused(&["--state", "state", "--log", "state/store.log"]),
+        refused(&["--state", "one", "--report", "./one"]),
+        refused(&["--state", "one/", "--control", "one"]),
     ];
+    assert!(!folder.join("one").exists());
+    fs::create_dir(folder.join("pipe")).unwrap();
+    for name in ["store.log", "store.new", "lock"] {
+        let pipe = folder.join("pipe").join(name);
+        let path = CString::new(pipe.as_os_str().as_bytes()).unwrap();
+        // SAFETY: the path is a C text that lives as long as the call.
+        assert_eq!(unsafe { libc::mkfifo(path.as_ptr(), 0o600) }, 0);
+        told.push(refused(&["--state", "pipe"]));
+        fs::remove_file(pipe).unwrap();
+    }
     saoms_in(&folder, &["run", "f.composite", "--state", "state", "--for", "200ms"]);
     let log = folder.join("state/store.log");
     let mut bytes = fs::read(&log).unwrap();
@@ -97,6 +128,11 @@ fn a_state_that_cannot_be_used_is_refused_before_the_start() {
         error: the state of `--state` cannot be used: the folder `other` has files, but no state of a fleet: name an empty folder, or one that does not exist
         error: the state of `--state` cannot be used: `other/notes.txt` cannot be made: File exists (os error 17)
         error: the log cannot be written to `state/store.log`, which is an input
+        error: `--report` and `--state` both name `one`, which `--state` makes a folder: give `--report` another path
+        error: `--control` and `--state` both name `one/`, which `--state` makes a folder: give `--control` another path
+        error: the state of `--state` cannot be used: `pipe/store.log` is no regular file: remove it, or name another folder
+        error: the state of `--state` cannot be used: the folder `pipe` has files, but no state of a fleet: name an empty folder, or one that does not exist
+        error: the state of `--state` cannot be used: `pipe/lock` is no regular file: remove it, or name another folder
         error: the state of `--state` cannot be used: `state/store.log` is damaged: what stands at byte N is not what was written there, and more follows it; restore the folder from a backup, or name another one: the fleet begins without its state then
         error: the state of `--state` cannot be used: `state/store.log` is of another version (`saoms-store 7`): run the version of SAOMS that wrote it, or name another folder"#]]
     .assert_eq(&told.join("\n"));
