@@ -40,7 +40,9 @@ impl Unanswered {
             if waited.is_multiple_of(ASKS_AFTER) && (*waited / ASKS_AFTER).is_power_of_two() {
                 due.push(fault);
             }
-            if *waited == TELLS_AFTER {
+            // All masters of a site hear of a failure, and one of them tells.
+            let tells = knowledge.speaks_for_all() || !knowledge.open.knows_failure(robot);
+            if *waited == TELLS_AFTER && tells {
                 let line = format_args!(
                     "waits for the world to say what robot {robot} left, and where: its luggage is not brought until \
                      then"

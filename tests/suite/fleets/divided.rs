@@ -113,6 +113,13 @@ fn luggage_of_a_robot_that_breaks_in_another_zone_is_brought() {
     }
 }
 
+#[test]
+fn a_person_is_told_once_of_a_failed_robot_of_which_the_world_says_nothing() {
+    let scenario = "at 1s luggage (3,2) to (20,2); at 2s violate 100 % on REMOVALTOPIC; at 3s crash Robot1";
+    let log = site(scenario, &[(2, 2), (23, 23)], "dischargePerBlock=0.1").run(1, MINUTE).log();
+    assert_eq!(log.matches("waits for the world to say what robot 1 left, and where").count(), 1, "{log}");
+}
+
 /// Messages are lost, late and doubled, masters, a zone and a robot crash, a robot breaks, and one is cut off.
 #[test]
 fn a_storm_loses_no_luggage_of_masters_that_divide_it() {

@@ -87,6 +87,11 @@ impl OpenLuggage {
         untold.chain(left).filter(|(robot, _)| !self.left.contains_key(robot)).collect()
     }
 
+    /// True if the component of a robot failed, and not all was done about that.
+    pub(in crate::master) fn knows_failure(&self, robot: u32) -> bool {
+        self.failed.contains_key(&robot)
+    }
+
     /// Forgets the failures of robots that are back, once all was done about them.
     pub(in crate::master) fn forget_failures(&mut self) {
         let OpenLuggage { failed, left, active, .. } = self;
