@@ -214,7 +214,7 @@ impl SharedMessage {
     /// For hosts: whether it was shared as a value. Bytes that came from elsewhere are to be checked before they are
     /// passed on.
     pub fn is_value(&self) -> bool {
-        self.0.payload.is_value()
+        self.0.payload.schema().is_some()
     }
 
     /// Its key on a state topic, if the message type has one.
@@ -223,12 +223,14 @@ impl SharedMessage {
     }
 
     /// The value as this Rust type. A message that arrived as bytes, or was sent by code built with another copy of the
-    /// type, is decoded once, however many readers there are. `None` when its bytes are not such a message.
+    /// type, is decoded once, however many readers there are. `None` when it was sent with another schema, or its bytes
+    /// are not such a message. What arrived as bytes says nothing of its schema: ask for the type of its topic.
     #[inline]
     pub fn get<M: Message>(&self) -> Option<&M> {
         let payload: &dyn Any = &self.0.payload;
         match payload.downcast_ref::<Typed<M>>() {
             Some(typed) => Some(&typed.0),
+            None if self.0.payload.schema().is_some_and(|schema| schema != M::SCHEMA) => None,
             None => decoded(&self.0.forms, self.bytes()),
         }
     }
@@ -262,8 +264,8 @@ impl fmt::Debug for SharedMessage {
 trait Payload: Any + Send + Sync {
     fn encode(&self, bytes: &mut Vec<u8>);
 
-    /// True if the message has a value of a Rust type, not bytes alone.
-    fn is_value(&self) -> bool;
+    /// The schema of a value; `None` where there are bytes alone.
+    fn schema(&self) -> Option<&'static str>;
 }
 
 /// A value of this build of the program. Hosts drop messages in the midst of their own work, so a panic of the value's
@@ -294,8 +296,8 @@ impl<M: Message> Payload for Typed<M> {
         cdr::encode_into(&*self.0, bytes);
     }
 
-    fn is_value(&self) -> bool {
-        true
+    fn schema(&self) -> Option<&'static str> {
+        Some(M::SCHEMA)
     }
 }
 
@@ -307,8 +309,8 @@ impl Payload for Arrived {
         bytes.clear();
     }
 
-    fn is_value(&self) -> bool {
-        false
+    fn schema(&self) -> Option<&'static str> {
+        None
     }
 }
 

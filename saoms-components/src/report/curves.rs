@@ -29,7 +29,8 @@ submit! { CurvesRegistration { curves: CURVES, new: || Box::new(FleetCurves::def
 /// What the curves show. Robots and luggage of different sites may have the same number.
 #[derive(Debug, Default)]
 struct FleetCurves {
-    topics: HashMap<String, String>,
+    /// By the name of the topic, what its messages are, and the site.
+    topics: HashMap<String, (Content, String)>,
     sites: BTreeMap<String, Site>,
     finished: usize,
 }
@@ -51,7 +52,55 @@ struct State {
     ended: Option<Time>,
 }
 
+/// What the messages of a topic are.
+#[derive(Clone, Copy, Debug)]
+enum Content {
+    Assignment,
+    Luggage,
+    Fault,
+    Removal,
+    Robot,
+    Visit,
+}
+
+fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
+    Some(match declared {
+        one if carries(one, &ASSIGNMENT) => Content::Assignment,
+        one if carries(one, &EVENT_LUGGAGE) => Content::Luggage,
+        one if carries(one, &FAULT) => Content::Fault,
+        one if carries(one, &REMOVAL) => Content::Removal,
+        one if carries(one, &ROBOT_LIST) => Content::Robot,
+        one if carries(one, &VISIT) => Content::Visit,
+        _ => return None,
+    })
+}
+
 impl Site {
+    /// Takes in a message. Gives the number of pieces and visits that it finishes; `None` for one that is no such
+    /// message.
+    fn hear(&mut self, content: Content, message: &SharedMessage) -> Option<usize> {
+        match content {
+            Content::Robot => self.hear_state(message.get::<RobotList>()?, message.header().sent),
+            Content::Luggage => {
+                let EventLuggage { luggage, stage, .. } = message.get::<EventLuggage>()?;
+                match stage {
+                    LuggageStage::Request => self.ask(*luggage),
+                    LuggageStage::Delivered => return Some(usize::from(self.close(*luggage))),
+                    LuggageStage::GivenUp => _ = self.close(*luggage),
+                    LuggageStage::Interest | LuggageStage::Release | LuggageStage::Taken | LuggageStage::Refused => {}
+                }
+            }
+            Content::Assignment => self.ask(message.get::<Assignment>()?.luggage),
+            Content::Visit => self.ask(message.get::<Visit>()?.visit),
+            Content::Fault => self.hear_fault(message.get::<Fault>()?),
+            Content::Removal => {
+                let delivered = &message.get::<Removal>()?.delivered;
+                return Some(delivered.iter().filter(|luggage| self.close(**luggage)).count());
+            }
+        }
+        Some(0)
+    }
+
     fn ask(&mut self, number: u32) {
         if !self.closed.contains(&number) {
             self.open.insert(number);
@@ -85,43 +134,19 @@ impl Site {
 
 impl RunCurves for FleetCurves {
     fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
-        let is_wanted = carries(declared, &ASSIGNMENT)
-            || carries(declared, &EVENT_LUGGAGE)
-            || carries(declared, &FAULT)
-            || carries(declared, &REMOVAL)
-            || carries(declared, &ROBOT_LIST)
-            || carries(declared, &VISIT);
-        if is_wanted {
-            let site = name.rsplit_once('/').map_or("", |(site, _)| site);
-            self.topics.insert(name.to_owned(), site.to_owned());
-        }
-        is_wanted
+        let Some(content) = content(declared) else { return false };
+        let site = name.rsplit_once('/').map_or("", |(site, _)| site);
+        self.topics.insert(name.to_owned(), (content, site.to_owned()));
+        true
     }
 
     fn message(&mut self, topic: &str, _component: &str, message: &SharedMessage) {
-        let Some(name) = self.topics.get(topic) else { return };
+        let Some((content, name)) = self.topics.get(topic) else { return };
         if !self.sites.contains_key(name) {
             self.sites.insert(name.clone(), Site::default());
         }
         let Some(site) = self.sites.get_mut(name) else { return };
-        if let Some(state) = message.get::<RobotList>() {
-            site.hear_state(state, message.header().sent);
-        } else if let Some(EventLuggage { luggage, stage, .. }) = message.get::<EventLuggage>() {
-            match stage {
-                LuggageStage::Request => site.ask(*luggage),
-                LuggageStage::Delivered => self.finished += usize::from(site.close(*luggage)),
-                LuggageStage::GivenUp => _ = site.close(*luggage),
-                LuggageStage::Interest | LuggageStage::Release | LuggageStage::Taken | LuggageStage::Refused => {}
-            }
-        } else if let Some(Assignment { luggage, .. }) = message.get::<Assignment>() {
-            site.ask(*luggage);
-        } else if let Some(Visit { visit, .. }) = message.get::<Visit>() {
-            site.ask(*visit);
-        } else if let Some(fault) = message.get::<Fault>() {
-            site.hear_fault(fault);
-        } else if let Some(Removal { delivered, .. }) = message.get::<Removal>() {
-            self.finished += delivered.iter().filter(|luggage| site.close(**luggage)).count();
-        }
+        self.finished += site.hear(*content, message).unwrap_or_default();
     }
 
     fn figures(&self, now: Time) -> Vec<f64> {
@@ -139,6 +164,7 @@ impl RunCurves for FleetCurves {
 
 #[cfg(test)]
 mod tests {
+    use saoms_api::host::cdr;
     use saoms_api::{Cause, Header, Message};
 
     use super::*;
@@ -146,6 +172,16 @@ mod tests {
     fn say<M: Message>(curves: &mut FleetCurves, topic: &str, message: M) {
         let header = Header { sender: 0, sent: Time::START, cause: Cause::default() };
         curves.message(topic, "", &SharedMessage::new(header, message));
+    }
+
+    #[test]
+    fn bytes_are_read_as_what_their_topic_carries() {
+        let mut curves = FleetCurves::default();
+        assert!(curves.wants_topic("VTOPIC", &VISIT.declaration()));
+        let header = Header { sender: 0, sent: Time::START, cause: Cause::default() };
+        let state = cdr::encode(&RobotList { robot: 1, active: true, ..RobotList::default() });
+        curves.message("VTOPIC", "", &SharedMessage::from_bytes(header, None, state));
+        assert_eq!(curves.figures(Time::START)[3], 0.0);
     }
 
     #[test]

@@ -123,6 +123,21 @@ fn other_copies_of_a_type_share_one_decoded_value() {
     assert!(std::ptr::eq(one, arrived.get().unwrap()) && std::ptr::eq(other, arrived.get().unwrap()));
 }
 
+/// A message whose bytes could be those of a position.
+#[derive(Clone, Debug, PartialEq, Message)]
+struct Door {
+    number: u8,
+    label: String,
+}
+
+#[test]
+fn a_message_of_another_schema_is_none_even_where_its_bytes_could_be() {
+    let door = Door { number: 4, label: "four".to_owned() };
+    assert_eq!(cdr::encode(&door), cdr::encode(&position(4, "four")));
+    let shared = SharedMessage::new(HEADER, door.clone());
+    assert_eq!((shared.get::<Position>(), shared.get::<Door>()), (None, Some(&door)));
+}
+
 #[test]
 fn threads_that_decode_at_once_see_one_value() {
     for _ in 0..50 {
