@@ -4,17 +4,18 @@
 //! one loop, without a loop, without a symptom, and with a decision that changes no value, one, or eight. A symptom
 //! brings the snapshot, a decision the comparison, a change its record in the journal.
 
+mod common;
+
 use std::hint::black_box;
 use std::sync::Arc;
-use std::time::Instant;
 
+use common::component;
 use saoms_api::host::Registration;
 use saoms_api::{
-    Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties, Record, Time,
-    record,
+    Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties, Record, record,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
-use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskProperties};
+use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec};
 use saoms_lang::registry::Registry;
 
 #[derive(Debug, Default, Entries)]
@@ -160,7 +161,7 @@ impl Component for Robot {
 }
 
 #[expect(clippy::print_stdout, reason = "a benchmark tells its result")]
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> common::Result<()> {
     let shapes = [
         ("without a loop", None),
         ("without a symptom", Some("-1")),
@@ -169,46 +170,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("with a decision that changes eight values", Some("8")),
     ];
     for (name, changes) in shapes {
-        println!("{:6.1} ns per execution {name}", best(changes)?);
+        println!("{:6.1} ns per execution {name}", common::best(&start(changes)?));
     }
     Ok(())
 }
 
-/// Nanoseconds per execution, the best of seven rounds after one that warms up.
-fn best(changes: Option<&str>) -> Result<f64, Box<dyn std::error::Error>> {
-    let fleet = start(changes)?;
-    let (periods, mut best) = (200_000, f64::INFINITY);
-    for round in 0..8 {
-        let begin = Instant::now();
-        fleet.run_until(Time::from_nanos((round + 1) * periods * 1_000_000_000));
-        let time = begin.elapsed().as_nanos() as f64 / periods as f64;
-        best = if round == 0 { best } else { best.min(time) };
-    }
-    Ok(best)
-}
-
-fn start(changes: Option<&str>) -> Result<RunningFleet, Box<dyn std::error::Error>> {
+fn start(changes: Option<&str>) -> common::Result<RunningFleet> {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Robot>())?;
-    let class = registry.get("load.Robot").ok_or("the class is registered")?;
     let busy = registry.get_loop("load.Busy").ok_or("the loop is registered")?;
-    let task = [("ID", "load"), ("period", "1s")].map(|(name, value)| (name.into(), value.into()));
     let of = |changes: &str| LoopSpec {
         name: "Busy".to_owned(),
         class: Arc::clone(busy),
         values: vec![("changes".into(), changes.into())],
         written: Default::default(),
     };
-    let components = vec![ComponentSpec {
-        path: "Robot".to_owned(),
-        class: Arc::clone(class),
-        site: Default::default(),
-        values: Vec::new(),
-        written: Default::default(),
-        task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),
-        library: None,
-        references: Vec::new(),
-        loops: changes.map(of).into_iter().collect(),
-    }];
+    let robot = component(&registry, ("Robot", "load.Robot"), &[], &[("period", "1s")])?;
+    let components = vec![ComponentSpec { loops: changes.map(of).into_iter().collect(), ..robot }];
     Ok(RunningFleet::start(Assembly { components, ..Assembly::default() }, Settings::simulated(1), Vec::new())?)
 }

@@ -5,18 +5,19 @@
 //! fleets that keep 150 bytes in each execution in a folder in `target`: how many executions were committed in a
 //! second, and how long their messages waited for the disk, from the execution to the reaction of their reader.
 
+mod common;
+
 use std::path::Path;
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use common::{Result, component};
 use saoms_api::host::Registration;
-use saoms_api::{Class, Component, Context, Failure, Message, Own, Properties, Publisher, Subscription, Time, Topic};
+use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Subscription, Topic};
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_core::store::Store;
-use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties};
+use saoms_lang::assembly::Assembly;
 use saoms_lang::registry::Registry;
-
-type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// Says that something was kept.
 #[derive(Clone, Debug, Default, Message)]
@@ -87,21 +88,14 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Nanoseconds per execution in virtual time, the best of seven rounds after one that warms up.
+/// Nanoseconds per execution of a keeper in virtual time.
 fn best(bytes: &str, commit_delay: Duration) -> Result<f64> {
     let fleet = RunningFleet::start(
         fleet(1, "1s", bytes, &[])?,
         Settings { commit_delay, ..Settings::simulated(1) },
         Vec::new(),
     )?;
-    let (periods, mut best) = (200_000, f64::INFINITY);
-    for round in 0..8 {
-        let begin = Instant::now();
-        fleet.run_until(Time::from_nanos((round + 1) * periods * 1_000_000_000));
-        let time = begin.elapsed().as_nanos() as f64 / periods as f64;
-        best = if round == 0 { best } else { best.min(time) };
-    }
-    Ok(best)
+    Ok(common::best(&fleet))
 }
 
 /// A fleet in real time for three seconds that keeps something on a disk.
@@ -130,26 +124,13 @@ fn fleet(keepers: usize, period: &str, bytes: &str, reader: &[(&str, &str)]) -> 
     let mut registry = Registry::new();
     registry.add(Registration::of::<Keeper>())?;
     registry.add(Registration::of::<Reader>())?;
-    let component =
-        |path: String, class: &str, values: &[(&str, &str)], task: &[(&str, &str)]| -> Result<ComponentSpec> {
-            let owned = |(name, value): &(&str, &str)| ((*name).into(), (*value).into());
-            let task: Vec<_> = [("ID", path.as_str())].iter().chain(task).map(owned).collect();
-            Ok(ComponentSpec {
-                class: registry.get(class).map(std::sync::Arc::clone).ok_or("the class is registered")?,
-                site: Default::default(),
-                values: values.iter().map(owned).collect(),
-                written: Default::default(),
-                task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),
-                library: None,
-                references: Vec::new(),
-                loops: Default::default(),
-                path,
-            })
-        };
-    let keeper = |number| component(format!("K{number}"), "load.Keeper", &[("bytes", bytes)], &[("period", period)]);
+    let keeper = |number| {
+        let path = format!("K{number}");
+        component(&registry, (&path, "load.Keeper"), &[("bytes", bytes)], &[("period", period)])
+    };
     let mut components = (0..keepers).map(keeper).collect::<Result<Vec<_>>>()?;
     if !reader.is_empty() {
-        components.push(component("Reader".to_owned(), "load.Reader", &[], reader)?);
+        components.push(component(&registry, ("Reader", "load.Reader"), &[], reader)?);
     }
     Ok(Assembly { components, ..Assembly::default() })
 }

@@ -1,92 +1,12 @@
 //! The invariants find a bug that somebody planted, within 100 seeds, and nothing where there is none.
 
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, Publisher};
-use saoms_components::grid::Block;
-use saoms_components::messages::{
-    CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION, Position,
-    ROBOT_LIST, RobotList,
-};
 use saoms_testkit::Fleet;
 
-/// The bug of a [`Planted`] robot.
-#[derive(Clone, Debug, Properties)]
-struct Bug {
-    /// What it does wrong, from some execution on.
-    bug: String,
-}
-
-/// A robot that says of itself what must not be.
-#[derive(Class)]
-#[class(name = "test.Planted", periodic)]
-struct Planted {
-    bug: String,
-    #[publishes(POSITION)]
-    positions: Publisher<Position>,
-    #[publishes(ROBOT_LIST)]
-    states: Publisher<RobotList>,
-    #[publishes(EVENT_LUGGAGE)]
-    luggage: Publisher<EventLuggage>,
-    #[publishes(CRITICAL_SITUATION)]
-    helps: Publisher<CriticalSituation>,
-}
-
-const ROBOT: u32 = 99;
-
-fn at(block: Block) -> Position {
-    Position { robot: ROBOT, block, next: block, wanted: block, ..Position::default() }
-}
-
-fn says(stage: LuggageStage) -> EventLuggage {
-    EventLuggage { robot: ROBOT, stage, ..EventLuggage::request(50, Block::new(1, 1), Block::new(2, 2)) }
-}
-
-impl Component for Planted {
-    type Properties = Bug;
-
-    fn new(bug: Bug) -> Result<Self, Failure> {
-        Ok(Planted {
-            bug: bug.bug,
-            positions: Publisher::default(),
-            states: Publisher::default(),
-            luggage: Publisher::default(),
-            helps: Publisher::default(),
-        })
-    }
-
-    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let wrong = context.chance().below(20) == 0;
-        let (near, far) = (Block::new(1, 1), Block::new(3, 1));
-        let battery = if self.bug == "battery" && wrong { 0.0 } else { 80.0 };
-        let state = RobotList { robot: ROBOT, active: true, battery, period: 100_000, ..RobotList::default() };
-        context.send(&self.states, state)?;
-        context.send(&self.positions, at(if self.bug == "jump" && wrong { far } else { near }))?;
-        if context.execution() == 0 && self.bug != "battery" && self.bug != "jump" {
-            context.send(&self.luggage, EventLuggage { robot: 0, ..says(LuggageStage::Request) })?;
-        }
-        match self.bug.as_str() {
-            "twice" if wrong => context.send(&self.luggage, says(LuggageStage::Delivered)),
-            "deadlock" if context.execution() == 1 => context.send(&self.luggage, says(LuggageStage::Taken)),
-            "broken" if context.execution() == 1 => context.send(
-                &self.helps,
-                CriticalSituation {
-                    critical: ROBOT,
-                    luggage: 50,
-                    kind: CriticalKind::CarriesLuggage,
-                    ..CriticalSituation::default()
-                },
-            ),
-            "clock" => {
-                let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-                let battery = f64::from(now.subsec_nanos() % 100);
-                let state = RobotList { robot: ROBOT, active: false, battery, ..RobotList::default() };
-                context.send(&self.states, state)
-            }
-            _ => Ok(()),
-        }
-    }
-}
+/// The robot with the bugs, of which the tests of the command make a plugin.
+#[path = "../../../tests/plugins/planted/src/lib.rs"]
+mod robot;
 
 fn planted(bug: &str) -> Fleet {
     Fleet::of_text(format!(

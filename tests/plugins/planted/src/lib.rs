@@ -57,7 +57,8 @@ impl Component for Planted {
             _ => 80.0,
         };
         // One that looks at the clock is none that has to do something.
-        let state = RobotList { robot: ROBOT, active: bug != "clock", battery, period: 100_000, ..RobotList::default() };
+        let state =
+            RobotList { robot: ROBOT, active: bug != "clock", battery, period: 100_000, ..RobotList::default() };
         context.send(&self.states, state)?;
         let block = if bug == "jump" && is_bad { Block::new(3, 1) } else { Block::new(1, 1) };
         let at = Position { robot: ROBOT, block, next: block, wanted: block, ..Position::default() };
