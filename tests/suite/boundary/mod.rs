@@ -11,6 +11,7 @@ mod misbehaving;
 mod named;
 mod process;
 mod refused;
+mod robots;
 mod run;
 mod tables;
 mod together;

@@ -6,8 +6,8 @@ use std::panic::panic_any;
 
 use acts::{Nasty, act};
 use saoms_api::{
-    Class, Component, Context, Effector, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
-    Publisher, Record, ReportValue, Saved, StopFunction, Subscription, Topic, interface, record,
+    Class, Component, Context, Effector, Entry, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
+    Properties, Publisher, Record, ReportValue, Saved, StopFunction, Subscription, Topic, interface, record,
 };
 
 /// A message.
@@ -295,6 +295,38 @@ impl Component for Lamp {
     }
 }
 
+/// Does it while its robot carries luggage.
+#[derive(Debug, LoopClass)]
+#[looping(name = "bad.Carrier")]
+pub struct Carrier {
+    #[properties]
+    properties: ActorProperties,
+    #[senses]
+    has_luggage: Entry<bool>,
+}
+
+impl Loop for Carrier {
+    type Properties = ActorProperties;
+    type Knowledge = dyn Knowledge;
+    type Symptom = Record;
+    type Decision = Record;
+
+    fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        if self.has_luggage.get(robot)? {
+            self.properties.act("carries")?;
+        }
+        Ok(None)
+    }
+
+    fn plan(&mut self, _: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        Ok(None)
+    }
+
+    fn execute(&mut self, _: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
 /// Does it in one of its phases.
 #[derive(Debug, LoopClass)]
 #[looping(name = "bad.Switch", effects("brightness"))]
@@ -355,5 +387,5 @@ impl Drop for Switch {
 
 saoms_api::plugin! {
     classes: [Actor, Lamp, Motor],
-    loops: [Switch],
+    loops: [Carrier, Switch],
 }
