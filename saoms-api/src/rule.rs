@@ -271,6 +271,8 @@ pub struct ComponentView<'a> {
     pub period: Option<Duration>,
     /// False if it does not start with the fleet, but waits until another component schedules it.
     pub starts: bool,
+    /// True if it starts again after a failure (`restart`). A rule of a library gets false.
+    pub restarts: bool,
     /// True if its messages go to a broker, which may have users outside this fleet.
     pub has_broker: bool,
     /// The topics that have another name on the bus than in the declaration of its class: that one, and the one on the

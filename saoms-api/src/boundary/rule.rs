@@ -99,6 +99,7 @@ unsafe fn read_member<'a>(
             values,
             period: (view.period != u64::MAX).then(|| Duration::from_nanos(view.period)),
             starts: view.starts != 0,
+            restarts: false,
             has_broker: view.has_broker != 0,
             renamed,
             wires,

@@ -53,4 +53,5 @@ saoms_api::fleet_rules!(
     peers::BROKER,
     scenario::strain::RULE,
     corridors::RULE,
+    masters::FORGETS,
 );

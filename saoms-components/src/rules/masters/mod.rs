@@ -1,5 +1,7 @@
 //! Rule: masters of the environment do not divide the luggage among them.
 
+mod forgets;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
@@ -8,6 +10,8 @@ use saoms_api::{Finding, Place};
 use crate::master::{FIRST, MasterEnvironment};
 use crate::messages::{ENVIRONMENT, TERRITORY};
 use crate::zone::Zone;
+
+pub(super) use forgets::RULE as FORGETS;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
