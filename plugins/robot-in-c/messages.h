@@ -45,11 +45,11 @@
     BLOCK JSON(}]}})
 
 #define GRANT_REQUEST                                                                                       \
-    JSON({"name": "GrantRequest", "key": "link", "place": "block", "fields": [{"name": "link", "type": "uint64"}, \
+    JSON({"name": "GrantRequest", "key": "link", "place": "at", "fields": [{"name": "link", "type": "uint64"}, \
         {"name": "zone", "type": "uint32"}, {"name": "term", "type": "uint64"},                             \
         {"name": "robot", "type": "uint32"}, {"name": "incarnation", "type": "uint64"},                     \
-        {"name": "number", "type": "uint64"}, {"name": "block", "type":)                                    \
-    BLOCK JSON(}, {"name": "end", "type":) BLOCK JSON(}, {"name": "received", "type": "uint64"},            \
+        {"name": "number", "type": "uint64"}, {"name": "at", "type":)                                       \
+    BLOCK JSON(}, {"name": "block", "type":) BLOCK JSON(}, {"name": "end", "type":) BLOCK JSON(}, {"name": "received", "type": "uint64"},            \
         {"name": "held", "type":) STEPS JSON(}, {"name": "goal", "type":) BLOCK                             \
     JSON(}, {"name": "charger", "type":) BLOCK JSON(}, {"name": "rank", "type": "uint64"},                  \
         {"name": "standing", "type": {"enumeration": "uint8", "values": {"MAKES_WAY": 0, "STAYS": 1, "LOST": 2}}}, \

@@ -97,6 +97,18 @@ static int contains(const Zone *zone, Block block, int64_t margin) {
     return x >= -margin && y >= -margin && x < zone->width + margin && y < zone->height + margin;
 }
 
+static int32_t within(int32_t value, int32_t from, uint32_t length) {
+    int64_t last = (int64_t)from + length - 1;
+    return value < from ? from : value > last ? (int32_t)last : value;
+}
+
+/* The block of a zone that is closest to a block. */
+static Block closest(const Zone *zone, Block block) {
+    block.x = within(block.x, zone->corner.x, zone->width);
+    block.y = within(block.y, zone->corner.y, zone->height);
+    return block;
+}
+
 static int is_beside(Block one, Block other) {
     return labs((long)one.x - other.x) + labs((long)one.y - other.y) == 1;
 }
@@ -222,6 +234,7 @@ static SaomsBytes request(const Patrol *patrol, const Zone *zone, int standing, 
     saoms_write_u32(message, patrol->number);
     saoms_write_u64(message, passage->incarnation);
     saoms_write_u64(message, zone->requests);
+    write_block(message, closest(zone, passage->held[0].block));
     write_block(message, passage->held[0].block);
     write_block(message, end);
     saoms_write_u64(message, zone->received);

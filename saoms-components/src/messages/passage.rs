@@ -15,6 +15,11 @@ pub const TERRITORY: Topic<Territory> = Topic::state("ZONETOPIC").optional();
 /// Published by robots; read by zones.
 pub const GRANT_REQUEST: Topic<GrantRequest> = Topic::state("GRANTREQUESTTOPIC").optional();
 
+/// Where robots are, for all zones at once, the newest message of each robot.
+///
+/// Published by robots; read by zones.
+pub const PRESENCE: Topic<Presence> = Topic::state("PRESENCETOPIC").optional();
+
 /// Grants of zones to robots, the newest of each zone to each robot.
 ///
 /// Published by zones; read by robots.
@@ -48,6 +53,15 @@ impl Territory {
         };
         inside(block.x, corner.x, width) && inside(block.y, corner.y, height)
     }
+
+    /// The block of the zone that is closest to a block.
+    pub fn closest(&self, block: Block) -> Block {
+        let Territory { corner, width, height, .. } = *self;
+        let within = |value: i32, from: i32, length: u32| {
+            value.max(from).min(from.saturating_add_unsigned(length.saturating_sub(1)))
+        };
+        Block::new(within(block.x, corner.x, width), within(block.y, corner.y, height))
+    }
 }
 
 /// A block of a robot's passage through a zone.
@@ -67,7 +81,7 @@ pub struct Step {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
 #[message(
     key = "link",
-    place = "block",
+    place = "at",
     speaker(
         "robot",
         instead = "to keep the robot at its block, stop it with `estop`; if it was removed from the floor, send `gone`"
@@ -86,6 +100,8 @@ pub struct GrantRequest {
     pub incarnation: u64,
     /// Number of the request, in the order in which the robot wrote its requests to this zone.
     pub number: u64,
+    /// Block of the zone that is closest to the robot: a zone hears requests on its own blocks.
+    pub at: Block,
     /// Position of the robot.
     pub block: Block,
     /// End of the robot's passage: the last block that it holds.
@@ -106,6 +122,42 @@ pub struct GrantRequest {
     /// Number of blocks that have to be granted ahead, so that the robot does not stop to wait for grants. The zone may
     /// grant fewer.
     pub ahead: u32,
+}
+
+/// Where a robot is, and of which zones it holds nothing.
+///
+/// It answers all zones that ask where the robot is, but for those of which it holds blocks or to which it drives: these
+/// get a request.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
+#[message(
+    key = "robot",
+    speaker(
+        "robot",
+        instead = "to keep the robot at its block, stop it with `estop`; if it was removed from the floor, send `gone`"
+    )
+)]
+pub struct Presence {
+    /// Number of the robot.
+    pub robot: u32,
+    /// Position of the robot.
+    pub block: Block,
+    /// End of the robot's passage: the last block that it holds.
+    pub end: Block,
+    /// True if it cannot move any more, so that others have to drive around it.
+    pub is_lost: bool,
+    /// Block of its charger, which the ways of others avoid.
+    pub charger: Block,
+    /// Terms of zones that the robot knows, and in which it holds nothing: it ignores grants of their earlier terms.
+    pub clear: Vec<ClearTerm>,
+}
+
+/// A term of a zone in which a robot holds nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Field)]
+pub struct ClearTerm {
+    /// Number of the zone.
+    pub zone: u32,
+    /// The term.
+    pub term: u64,
 }
 
 /// What a robot does when another one wants its block.
@@ -173,7 +225,22 @@ impl Validate for GrantRequest {
 
     fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
         let held = self.held.iter().map(|step| step.block);
-        for block in [self.block, self.end, self.goal, self.charger].into_iter().chain(held) {
+        for block in [self.block, self.end, self.at, self.goal, self.charger].into_iter().chain(held) {
+            Problem::of_block(block, area)?;
+        }
+        validator.check_speaker(self.robot, sender)
+    }
+}
+
+impl Validate for Presence {
+    const WHAT: &'static str = "where the robot is";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+        for block in [self.block, self.end, self.charger] {
             Problem::of_block(block, area)?;
         }
         validator.check_speaker(self.robot, sender)

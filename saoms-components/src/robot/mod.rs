@@ -35,7 +35,7 @@ use crate::console::Timestamp;
 use crate::hardware::Hardware;
 use crate::messages::{
     ASSIGNMENT, COLLISION, DRAIN, Drain, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, OUTAGE, Outage, POSITION,
-    ROBOT_LIST, TERRITORY, VISIT,
+    PRESENCE, ROBOT_LIST, TERRITORY, VISIT,
 };
 
 pub use battery::{Battery, Consumption};
@@ -86,7 +86,7 @@ const ASSISTANCE: &str = "assistance";
             classic::ClassicPathFollower
         )
     ),
-    publishes(COLLISION, GRANT_REQUEST),
+    publishes(COLLISION, GRANT_REQUEST, PRESENCE),
     subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT, TERRITORY, GRANT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),

@@ -1,8 +1,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use saoms_api::{
-    CallError, Cause, Class, Component, Context, Failure, Header, KnownPublisher, Publisher, ReportValue, Subscription,
-    Time, record, warn,
+    CallError, Cause, Class, Component, Context, Failure, Header, KnownPublisher, Publisher, Region, ReportValue,
+    Subscription, Time, record, warn,
 };
 
 use super::deadlock::deadlocks;
@@ -14,7 +14,10 @@ use super::properties::ZoneProperties;
 use super::{memory, plan};
 use crate::grid::{Block, Map};
 use crate::hardware::HardwareReference;
-use crate::messages::{FAULT, Fault, GRANT, GRANT_REQUEST, Grant, GrantRequest, TERRITORY, Territory};
+use crate::messages::{
+    ClearTerm, FAULT, Fault, GRANT, GRANT_REQUEST, Grant, GrantRequest, PRESENCE, Presence, Standing, TERRITORY,
+    Territory,
+};
 use crate::validation::MessageValidator;
 
 /// Number of executions after which the zone repeats what was not confirmed.
@@ -25,6 +28,9 @@ const CONFIRM: u64 = 1;
 
 /// Number of executions without grants after which the zone says for whom it waits.
 const CLOSED: u64 = 20;
+
+/// Number of executions after which a zone that has been closed for longer asks again: each time all robots answer.
+const ASK_AGAIN: u64 = 40;
 
 /// Grants robots the passage through its blocks.
 ///
@@ -52,6 +58,8 @@ pub struct Zone {
     unconfirmed: BTreeMap<u32, u64>,
     #[subscribes(GRANT_REQUEST)]
     requests: Subscription<GrantRequest>,
+    #[subscribes(PRESENCE)]
+    presences: Subscription<Presence>,
     #[subscribes(FAULT)]
     faults: Subscription<Fault>,
     #[publishes(GRANT)]
@@ -66,6 +74,8 @@ struct State {
     ledger: Ledger,
     maneuvers: Vec<Maneuver>,
     ground: Ground,
+    /// Blocks of robots that cannot move any more, as far as these or others have said so.
+    lost: BTreeMap<u32, Vec<Block>>,
 }
 
 impl Component for Zone {
@@ -87,6 +97,7 @@ impl Component for Zone {
             deadlocked: BTreeSet::new(),
             unconfirmed: BTreeMap::new(),
             requests: Subscription::default(),
+            presences: Subscription::default(),
             faults: Subscription::default(),
             grants: Publisher::default(),
             territories: Publisher::default(),
@@ -152,7 +163,15 @@ impl Zone {
             }
         };
         context.send(&self.territories, ledger.territory().clone())?;
-        self.state = Some(State { ledger, maneuvers: Vec::new(), ground: Ground::new(map) });
+        let Territory { corner, width, height, .. } = *ledger.territory();
+        if (map.width(), map.height()) != (width, height) {
+            let columns = corner.x..=corner.x.saturating_add_unsigned(width - 1);
+            let rows = corner.y..=corner.y.saturating_add_unsigned(height - 1);
+            context.set_region(&self.requests, Some(Region::new(columns, rows)))?;
+        }
+        let mut ground = Ground::new(map);
+        ledger.members().values().for_each(|member| ground.add_charger(member.request.charger));
+        self.state = Some(State { ledger, maneuvers: Vec::new(), ground, lost: BTreeMap::new() });
         Ok(())
     }
 
@@ -176,6 +195,7 @@ impl Zone {
 
     fn serve(&mut self, state: &mut State, context: &mut Context<'_>) -> Result<(), Failure> {
         let mut changed = self.hear(state, context);
+        self.hear_presence(state, context);
         changed.extend(self.hear_gone(state, context));
         if !self.is_open(state, context)? {
             // It begins a new record once all have answered.
@@ -211,7 +231,7 @@ impl Zone {
     /// Takes in what robots ask for. Returns those whose record has changed.
     fn hear(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
         let mut changed = BTreeSet::new();
-        let State { ledger, ground, .. } = state;
+        let State { ledger, ground, lost, .. } = state;
         for (header, request) in context.receive(&self.requests).with_headers() {
             let is_here = request.zone == ledger.territory().zone && request.term == ledger.territory().term;
             if !is_here || !self.validator.accepts(request, header, Some(ground.map()), context) {
@@ -221,7 +241,11 @@ impl Zone {
                 self.heard.insert(header.sender);
             }
             let spoke = self.spoke.entry(request.robot).or_default();
+            if header.sent >= *spoke && request.standing != Standing::Lost {
+                lost.remove(&request.robot);
+            }
             *spoke = header.sent.max(*spoke);
+            ground.add_charger(request.charger);
             let heard = ledger.hear(request);
             // While it is closed, the other one may have to say yet that it is somewhere else.
             if let (Heard::Conflict { block, other }, true) = (heard, self.open) {
@@ -237,6 +261,31 @@ impl Zone {
         changed
     }
 
+    /// Takes in where robots of the whole site are.
+    fn hear_presence(&mut self, state: &mut State, context: &mut Context<'_>) {
+        let State { ledger, ground, lost, .. } = state;
+        let &Territory { zone, term, .. } = ledger.territory();
+        for (header, presence) in context.receive(&self.presences).with_headers() {
+            if !self.validator.accepts(presence, header, Some(ground.map()), context) {
+                continue;
+            }
+            if !self.open && presence.clear.contains(&ClearTerm { zone, term }) {
+                self.heard.insert(header.sender);
+            }
+            let spoke = self.spoke.entry(presence.robot).or_default();
+            if header.sent < *spoke {
+                continue;
+            }
+            *spoke = header.sent;
+            ground.add_charger(presence.charger);
+            if presence.is_lost {
+                lost.insert(presence.robot, vec![presence.block, presence.end]);
+            } else {
+                lost.remove(&presence.robot);
+            }
+        }
+    }
+
     /// Frees the blocks of robots that somebody took off the floor. Those whose component failed keep the block where a
     /// world stopped them, or all where that is not known. Returns those whose record has changed.
     fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
@@ -247,12 +296,14 @@ impl Zone {
                 let is_over = |spoke: &Time| fault.since.is_none_or(|since| *spoke > since);
                 if !self.spoke.get(&fault.robot).is_some_and(is_over) {
                     let at = fault.block.filter(|_| self.spoke.contains_key(&fault.robot));
+                    state.lost.extend(at.map(|at| (fault.robot, vec![at])));
                     state.ledger.stop(fault.robot, at);
                     changed.insert(fault.robot);
                 }
                 continue;
             }
             state.ledger.forget(fault.robot);
+            state.lost.remove(&fault.robot);
             if !self.open {
                 self.gone.insert(fault.robot);
             }
@@ -284,7 +335,8 @@ impl Zone {
             context.alert_over("closed", "");
             return Ok(true);
         }
-        if context.execution().is_multiple_of(REPEAT) {
+        let again = if context.execution() > CLOSED { ASK_AGAIN } else { REPEAT };
+        if context.execution().is_multiple_of(again) {
             context.send(&self.territories, state.ledger.territory().clone())?;
         }
         if context.execution() == CLOSED {
@@ -330,10 +382,10 @@ impl Zone {
 
     /// Plans a round, if a robot wants to go somewhere.
     fn plan(&self, state: &mut State) -> Planned {
-        let State { ledger, maneuvers, ground } = state;
-        let lost = ledger.members().values().filter(|member| member.is_obstacle());
-        let obstacles: Vec<Block> = lost.flat_map(Member::blocks).collect();
-        ground.begin_round(obstacles, ledger.members().values().map(|member| member.request.charger));
+        let State { ledger, maneuvers, ground, lost } = state;
+        let members = ledger.members().values().filter(|member| member.is_obstacle());
+        let obstacles: Vec<Block> = members.flat_map(Member::blocks).chain(lost.values().flatten().copied()).collect();
+        ground.begin_round(obstacles);
         let planned = plan::plan(ledger, maneuvers, ground, self.properties.ahead as usize);
         ledger.end_round();
         planned

@@ -46,24 +46,21 @@ impl Ground {
         self.map.is_free(block)
     }
 
-    /// Begins a round with these obstacles and chargers: robots that cannot move, and blocks where robots stay long.
-    /// Ways that were not used for long are forgotten.
-    pub(crate) fn begin_round(&mut self, obstacles: Vec<Block>, chargers: impl Iterator<Item = Block>) {
-        self.round += 1;
-        let mut changed = false;
-        for charger in chargers {
-            if self.chargers.is_free(charger) {
-                self.chargers.set_blocked(charger);
-                changed = true;
-            }
+    /// Notes a charger, where robots stay long: ways avoid it.
+    pub(crate) fn add_charger(&mut self, charger: Block) {
+        if self.chargers.is_free(charger) {
+            self.chargers.set_blocked(charger);
+            self.ways.clear();
         }
+    }
+
+    /// Begins a round with these obstacles: robots that cannot move. Ways that were not used for long are forgotten.
+    pub(crate) fn begin_round(&mut self, obstacles: Vec<Block>) {
+        self.round += 1;
         if obstacles != self.obstacles {
             self.passable.clone_from(&self.map);
             obstacles.iter().for_each(|block| _ = self.passable.set_blocked(*block));
             self.obstacles = obstacles;
-            changed = true;
-        }
-        if changed {
             self.ways.clear();
         }
         if self.ways.len().saturating_mul(self.passable.size()) > KEPT {

@@ -1,5 +1,5 @@
 use crate::grid::Block;
-use crate::messages::{Grant, GrantRequest, Standing, Step, Territory, link};
+use crate::messages::{ClearTerm, Grant, GrantRequest, Standing, Step, Territory, link};
 
 /// The blocks that a robot may enter: its part of the protocol.
 ///
@@ -10,7 +10,12 @@ pub(crate) struct Passage {
     robot: u32,
     incarnation: u64,
     held: Vec<Held>,
+    /// The zones that the robot knows, by their numbers.
+    territories: Vec<Territory>,
+    /// The zones to which it has spoken.
     links: Vec<Link>,
+    /// The end of the passage and the charger for which links were made.
+    linked: Option<(Block, Block)>,
 }
 
 /// A block that the robot holds, with the zone that granted it.
@@ -52,12 +57,18 @@ impl Passage {
     /// The passage of a robot that enters the floor at a block.
     pub(crate) fn new(robot: u32, incarnation: u64, block: Block) -> Passage {
         let held = vec![Held { zone: 0, step: Step { number: 0, block } }];
-        Passage { robot, incarnation, held, links: Vec::new() }
+        Passage { robot, incarnation, held, ..Passage::default() }
     }
 
     /// The same passage as an earlier one.
-    pub(crate) fn with(robot: u32, incarnation: u64, held: Vec<Held>, links: Vec<Link>) -> Passage {
-        Passage { robot, incarnation, held, links }
+    pub(crate) fn with(
+        robot: u32,
+        incarnation: u64,
+        held: Vec<Held>,
+        territories: Vec<Territory>,
+        links: Vec<Link>,
+    ) -> Passage {
+        Passage { robot, incarnation, held, territories, links, linked: None }
     }
 
     pub(crate) fn robot(&self) -> u32 {
@@ -70,6 +81,10 @@ impl Passage {
 
     pub(crate) fn held(&self) -> &[Held] {
         &self.held
+    }
+
+    pub(crate) fn territories(&self) -> &[Territory] {
+        &self.territories
     }
 
     pub(crate) fn links(&self) -> &[Link] {
@@ -88,21 +103,50 @@ impl Passage {
 
     /// Takes in the territory of a zone.
     pub(crate) fn hear_territory(&mut self, territory: &Territory) {
-        match self.links.iter_mut().find(|link| link.territory.zone == territory.zone) {
-            Some(link) if territory.term < link.territory.term => return,
-            Some(link) if territory.term == link.territory.term => link.territory.clone_from(territory),
-            // The zone lost its record: what it granted before and did not arrive yet counts no more.
-            Some(link) => {
-                link.territory.clone_from(territory);
+        match self.territories.binary_search_by_key(&territory.zone, |known| known.zone) {
+            Ok(place) if territory.term < self.territories[place].term || *territory == self.territories[place] => {
+                return;
+            }
+            Ok(place) => self.territories[place].clone_from(territory),
+            Err(place) => self.territories.insert(place, territory.clone()),
+        }
+        if let Some(link) = self.links.iter_mut().find(|link| link.territory.zone == territory.zone) {
+            if territory.term > link.territory.term {
+                // The zone lost its record: what it granted before and did not arrive yet counts no more.
                 link.heard = 0;
             }
-            None => {
-                let territory = territory.clone();
-                self.links.push(Link { territory, received: 0, said: GrantRequest::default(), heard: 0 });
-            }
+            link.territory.clone_from(territory);
         }
         for held in self.held.iter_mut().filter(|held| held.zone == 0 && territory.contains(held.step.block)) {
             held.zone = territory.zone;
+        }
+        self.linked = None;
+    }
+
+    /// The terms in which the robot holds nothing: it ignores grants of earlier ones.
+    pub(crate) fn clear(&self) -> Vec<ClearTerm> {
+        let holds = |zone: u32| self.held.iter().any(|held| held.zone == zone);
+        let clear = self.territories.iter().filter(|territory| !holds(territory.zone));
+        clear.map(|&Territory { zone, term, .. }| ClearTerm { zone, term }).collect()
+    }
+
+    /// Makes links to the zones that the robot holds blocks of, those beside the end of its passage, and that of its
+    /// charger.
+    fn link(&mut self, charger: Block) {
+        let end = self.end();
+        if self.linked == Some((end, charger)) {
+            return;
+        }
+        self.linked = Some((end, charger));
+        let Passage { held, territories, links, .. } = self;
+        for territory in territories.iter() {
+            let is_near = || territory.contains(end) || end.neighbours().iter().any(|block| territory.contains(*block));
+            let is_held = || held.iter().any(|held| held.zone == territory.zone);
+            let is_linked = || links.iter().any(|link| link.territory.zone == territory.zone);
+            if (is_near() || is_held() || territory.contains(charger)) && !is_linked() {
+                let territory = territory.clone();
+                links.push(Link { territory, received: 0, said: GrantRequest::default(), heard: 0 });
+            }
         }
     }
 
@@ -147,7 +191,8 @@ impl Passage {
 
     /// The requests that have to be sent now: new ones, and with `again` also those that were not taken in.
     pub(crate) fn requests(&mut self, wish: Wish, again: bool) -> Vec<GrantRequest> {
-        let Passage { robot, incarnation, ref held, ref mut links } = *self;
+        self.link(wish.charger);
+        let Passage { robot, incarnation, ref held, ref mut links, .. } = *self;
         let (Some(first), Some(last)) = (held.first(), held.last()) else { return Vec::new() };
         let (block, end) = (first.step.block, last.step.block);
         let goal = wish.goal.unwrap_or(end);
@@ -167,6 +212,7 @@ impl Passage {
                 robot,
                 incarnation,
                 number: one.said.number,
+                at: one.territory.closest(block),
                 block,
                 end,
                 received: one.received,
@@ -177,14 +223,12 @@ impl Passage {
                 standing: wish.standing,
                 ahead: if is_concerned { wish.ahead } else { 0 },
             };
-            // A zone that the robot has left need not know where it is now, unless it stays there for ever.
+            // A zone that the robot has left need not know where it is now.
             let is_news = if is_concerned || is_new {
                 // The zone need not hear of another latency by itself.
                 GrantRequest { ahead: one.said.ahead, ..request.clone() } != one.said
             } else {
-                let is_lost = |request: &GrantRequest| request.standing == Standing::Lost;
-                is_lost(&request) != is_lost(&one.said)
-                    || (request.goal != request.end) != (one.said.goal != one.said.end)
+                (request.goal != request.end) != (one.said.goal != one.said.end)
                     || (&request.held, request.received) != (&one.said.held, one.said.received)
             };
             if is_news {

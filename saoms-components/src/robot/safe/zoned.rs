@@ -83,7 +83,8 @@ impl RobotKnowledge {
         let priority = if stands { IMMOVABLE } else { self.leg.priority(self.number) };
         let position = Position { priority, ..self.position() };
         let robot = self.robot(!(self.variables.critical || self.shut_down));
-        let Some(zones) = &self.zones else { return Ok(()) };
+        let Some(zones) = &mut self.zones else { return Ok(()) };
+        zones.repeat_presence(context)?;
         if let Some(positions) = &zones.positions {
             context.send(positions, position)?;
         }

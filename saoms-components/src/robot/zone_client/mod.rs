@@ -5,7 +5,10 @@ mod latency;
 use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
 use crate::grid::{Block, Map};
-use crate::messages::{GRANT, GRANT_REQUEST, Grant, GrantRequest, Position, RobotList, Step, TERRITORY, Territory};
+use crate::messages::{
+    GRANT, GRANT_REQUEST, Grant, GrantRequest, PRESENCE, Position, Presence, RobotList, Standing, Step, TERRITORY,
+    Territory,
+};
 use crate::validation::MessageValidator;
 use crate::zone::{Held, Link, Passage, Wish};
 use latency::Latency;
@@ -30,6 +33,13 @@ pub(crate) struct ZoneClient {
     territories: Subscription<Territory>,
     grants: Subscription<Grant>,
     requests: Publisher<GrantRequest>,
+    presences: Publisher<Presence>,
+    /// True if a zone has asked where the robot is.
+    is_asked: bool,
+    /// Whether the robot said last that it cannot move any more; `None` if it never said so.
+    said_lost: Option<bool>,
+    /// Its charger, as it said last.
+    said_charger: Block,
     /// For repetitions of what loops said; `None` where the robot has no loop that says it.
     pub(super) positions: Option<Publisher<Position>>,
     pub(super) robots: Option<Publisher<RobotList>>,
@@ -55,6 +65,9 @@ pub(crate) struct ZoneClient {
 pub(crate) struct ZoneMemory {
     incarnation: u64,
     held: Vec<HeldMemory>,
+    territories: Vec<Territory>,
+    said_lost: Option<bool>,
+    said_charger: Block,
     links: Vec<LinkMemory>,
     goal: Option<Block>,
     aimed: Vec<Aimed>,
@@ -104,6 +117,10 @@ impl ZoneClient {
             territories: context.subscribe(&TERRITORY)?,
             grants: context.subscribe(&GRANT)?,
             requests: context.publish(&GRANT_REQUEST)?,
+            presences: context.publish(&PRESENCE)?,
+            is_asked: false,
+            said_lost: None,
+            said_charger: Block::default(),
             positions: None,
             robots: None,
             validator: MessageValidator::default(),
@@ -129,6 +146,9 @@ impl ZoneClient {
         ZoneMemory {
             incarnation: passage.incarnation(),
             held: held.collect(),
+            territories: passage.territories().to_vec(),
+            said_lost: self.said_lost,
+            said_charger: self.said_charger,
             links: links.collect(),
             goal: self.goal,
             aimed: self.aimed.clone(),
@@ -150,7 +170,10 @@ impl ZoneClient {
             said: link.said,
             heard: link.heard,
         });
-        self.passage = Some(Passage::with(robot, memory.incarnation, held.collect(), links.collect()));
+        let (incarnation, territories) = (memory.incarnation, memory.territories);
+        self.passage = Some(Passage::with(robot, incarnation, held.collect(), territories, links.collect()));
+        self.is_asked = true;
+        (self.said_lost, self.said_charger) = (memory.said_lost, memory.said_charger);
         (self.goal, self.aimed) = (memory.goal, memory.aimed);
         (self.in_the_way, self.latency) = (memory.in_the_way, memory.latency);
     }
@@ -176,6 +199,7 @@ impl ZoneClient {
             latency,
             aimed,
             rested,
+            is_asked,
             ..
         } = self
         else {
@@ -186,6 +210,7 @@ impl ZoneClient {
         for (header, territory) in context.receive(territories).with_headers() {
             if validator.accepts(territory, header, area, context) {
                 passage.hear_territory(territory);
+                *is_asked = true;
                 validator.expect_introductions();
             }
         }
@@ -301,6 +326,41 @@ impl ZoneClient {
             self.latency.asks(request.zone, request.number);
             context.send(&self.requests, request)?;
         }
+        let is_lost = wish.standing == Standing::Lost;
+        let is_news = is_lost != self.said_lost.unwrap_or(false) || wish.charger != self.said_charger;
+        if std::mem::take(&mut self.is_asked) || is_news {
+            self.said_charger = wish.charger;
+            self.tell_presence(context, is_lost)?;
+        }
         Ok(())
+    }
+
+    /// Repeats where the robot is, if it cannot move any more or could not some time.
+    ///
+    /// # Errors
+    /// The message cannot be sent.
+    pub(crate) fn repeat_presence(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.said_lost.map_or(Ok(()), |is_lost| self.tell_presence(context, is_lost))
+    }
+
+    /// Says where the robot is, to all zones.
+    ///
+    /// # Errors
+    /// The message cannot be sent.
+    fn tell_presence(&mut self, context: &mut Context<'_>, is_lost: bool) -> Result<(), Failure> {
+        let Some(passage) = &self.passage else { return Ok(()) };
+        if is_lost || self.said_lost.is_some() {
+            self.said_lost = Some(is_lost);
+        }
+        let block = passage.held().first().map_or(Block::default(), |held| held.step.block);
+        let presence = Presence {
+            robot: passage.robot(),
+            block,
+            end: passage.end(),
+            is_lost,
+            charger: self.said_charger,
+            clear: passage.clear(),
+        };
+        context.send(&self.presences, presence)
     }
 }

@@ -1,5 +1,7 @@
 //! Fleets whose robots enter blocks only with grants of zones.
 
+mod apart;
+
 use std::time::Duration;
 
 use saoms_api::{Class, Component, Failure};

@@ -1,0 +1,93 @@
+//! What is explored.
+
+use super::{Faults, Scenario};
+
+/// Two robots that exchange their places on a square.
+const SQUARE: Scenario = Scenario {
+    name: "square",
+    map: "..\n..",
+    zones: &[(0, 2)],
+    robots: &[((0, 0), (1, 1)), ((1, 1), (0, 0))],
+    faults: NONE,
+    ahead: 1,
+    needed: 0,
+    waits: 0,
+    arriving: 2,
+};
+
+/// Two robots that have to pass each other beside a single block.
+const BAY: Scenario = Scenario {
+    name: "bay",
+    map: "...\n@.@",
+    robots: &[((0, 0), (2, 0)), ((2, 0), (0, 0))],
+    zones: &[(0, 3)],
+    waits: 4,
+    ..SQUARE
+};
+
+/// A robot that drives from one zone to the other.
+const BORDER: Scenario =
+    Scenario { name: "border", map: "...", zones: &[(0, 2), (2, 1)], robots: &[((0, 0), (2, 0))], ..SQUARE };
+
+const NONE: Faults = Faults { robots: 0, zones: 0 };
+
+fn explore(scenarios: &[Scenario]) {
+    for scenario in scenarios {
+        let states = scenario.explore();
+        println!("{}, {:?}: {states} states", scenario.name, scenario.faults);
+    }
+}
+
+/// Three robots on four blocks: each can only go where the next one was.
+const ROUND: Scenario =
+    Scenario { name: "round", robots: &[((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 1))], ..SQUARE };
+
+/// Four robots, of which each can only go where the next one was.
+const ROW: Scenario = Scenario {
+    name: "row",
+    map: "...\n...",
+    zones: &[(0, 3)],
+    robots: &[((0, 0), (1, 0)), ((1, 0), (2, 0)), ((2, 0), (2, 1)), ((2, 1), (1, 1))],
+    ..SQUARE
+};
+
+/// Two robots, of which each has to enter the zone of the other one. Late messages never overtake newer ones.
+const ZONES: Scenario = Scenario { name: "zones", zones: &[(0, 1), (1, 1)], arriving: 1, ..SQUARE };
+
+/// Two robots, of which the first one drives into another zone, and the second one follows it.
+const TRAIN: Scenario = Scenario {
+    name: "train",
+    map: "...",
+    zones: &[(0, 2), (2, 1)],
+    robots: &[((0, 0), (1, 0)), ((1, 0), (2, 0))],
+    ..SQUARE
+};
+
+#[test]
+fn messages_that_are_lost_late_or_come_again_lead_to_no_collision_and_no_standstill() {
+    explore(&[SQUARE, BORDER, BAY, ROUND, ROW, TRAIN]);
+}
+
+#[test]
+fn robots_that_exchange_their_zones_do_not_collide_or_stand_still() {
+    explore(&[ZONES]);
+}
+
+#[test]
+fn blocks_that_are_granted_ahead_beside_other_robots_lead_to_no_collision_and_no_standstill() {
+    explore(&[Scenario { needed: 2, ..SQUARE }, Scenario { needed: 2, ..ROUND }, Scenario { needed: 3, ..ROW }]);
+}
+
+#[test]
+fn robots_that_lose_their_memory_lead_to_no_collision_and_no_standstill() {
+    let faults = Faults { robots: 1, ..NONE };
+    let train = Scenario { faults, arriving: 1, ..TRAIN };
+    explore(&[Scenario { faults, ..BORDER }, Scenario { faults, ..ROUND }, Scenario { faults, ..SQUARE }, train]);
+}
+
+#[test]
+fn zones_that_lose_their_record_lead_to_no_collision_and_no_standstill() {
+    let faults = Faults { zones: 1, ..NONE };
+    let train = Scenario { faults, arriving: 1, ..TRAIN };
+    explore(&[Scenario { faults, ..BORDER }, Scenario { faults, ..ROUND }, Scenario { faults, ..SQUARE }, train]);
+}
