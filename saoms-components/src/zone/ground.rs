@@ -1,5 +1,6 @@
 use std::collections::HashMap;
 
+use super::dead_ends::DeadEnds;
 use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
 
 /// The map of a zone, with the ways to the goals of its robots.
@@ -13,6 +14,7 @@ pub(crate) struct Ground {
     /// Chargers, as blocked blocks of a map: ways avoid them.
     chargers: Map,
     obstacles: Vec<Block>,
+    dead_ends: DeadEnds,
     ways: HashMap<Block, Way>,
     /// Number of the present round, for the age of ways.
     round: u64,
@@ -33,12 +35,18 @@ const KEPT: usize = 32 * 1024 * 1024;
 impl Ground {
     pub(crate) fn new(map: Map) -> Ground {
         let chargers = Map::new(map.width(), map.height());
-        Ground { passable: map.clone(), map, chargers, obstacles: Vec::new(), ways: HashMap::new(), round: 0 }
+        let (passable, dead_ends) = (map.clone(), DeadEnds::of(&map));
+        Ground { passable, map, chargers, obstacles: Vec::new(), dead_ends, ways: HashMap::new(), round: 0 }
     }
 
     /// The map without obstacles.
     pub(crate) fn map(&self) -> &Map {
         &self.map
+    }
+
+    /// The dead ends of the map without obstacles.
+    pub(super) fn dead_ends(&self) -> &DeadEnds {
+        &self.dead_ends
     }
 
     /// True if a robot can be on the block.

@@ -4,6 +4,7 @@
 //! both are state machines without clock and chance. `plan` decides which robot is granted which block.
 
 mod component;
+mod dead_ends;
 mod deadlock;
 mod ground;
 mod ledger;

@@ -6,12 +6,15 @@
 //! if that is not possible, the next best block is tried. This is the priority inheritance with backtracking of PIBT
 //! (Okumura, Machida, Défago, Tamura, 2019) without its common time steps, and without moves into a block that is not
 //! free yet.
+//!
+//! Into a dead end no robot goes on while another one comes out of it, which is served first: else more and more robots
+//! would queue in it, and none could leave.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use super::ground::Ground;
-use super::ledger::Ledger;
+use super::ledger::{Ledger, Member};
 use super::maneuver::Maneuver;
 use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::Standing;
@@ -69,26 +72,49 @@ pub(crate) struct Planned {
 pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &mut Ground, ahead: usize) -> Planned {
     let mut granted = BTreeSet::new();
     maneuvers.retain_mut(|maneuver| maneuver.go_on(ledger, &mut granted));
-    let mut order: Vec<(Reverse<u64>, u32)> = ledger
-        .members()
-        .iter()
-        .filter(|(_, member)| member.wants_to_go())
-        .map(|(robot, member)| (Reverse(member.request.rank), *robot))
-        .collect();
-    order.sort_unstable();
+    let order = order(ledger, ground);
     let (busy, taken): (BTreeSet<u32>, BTreeSet<Block>) = maneuvers.iter().flat_map(Maneuver::concerns).unzip();
     let mut round = Round { ledger, ground, decided: busy.clone(), busy, taken, granted, ahead };
-    for (_, robot) in &order {
+    for robot in &order {
         round.serve(*robot);
     }
-    for (_, robot) in &order {
+    for robot in &order {
         round.extend(*robot);
     }
     if let Some(maneuver) = round.maneuver(&order) {
         maneuvers.push(maneuver);
     }
-    let waiting = order.iter().map(|(_, robot)| *robot).filter(|robot| round.note_wait(*robot)).collect();
+    let waiting = order.iter().copied().filter(|robot| round.note_wait(*robot)).collect();
     Planned { granted: round.granted, waiting }
+}
+
+/// The robots that want to go somewhere, in the order in which they are served: by their ranks, and first of all those
+/// that come out of a dead end into which others want to go.
+fn order(ledger: &Ledger, ground: &Ground) -> Vec<u32> {
+    let going = || ledger.members().iter().filter(|(_, member)| member.wants_to_go());
+    let first: BTreeSet<u32> = going()
+        .filter_map(|(robot, member)| Some((*robot, ground.dead_ends().door(member.end(), member.request.goal)?)))
+        .flat_map(|(robot, door)| coming_out(ledger, ground, door, robot))
+        .collect();
+    let mut order: Vec<(bool, Reverse<u64>, u32)> =
+        going().map(|(robot, member)| (!first.contains(robot), Reverse(member.request.rank), *robot)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, _, robot)| robot).collect()
+}
+
+/// The robots that want to leave a dead end through one of its blocks, or to that block, other than this robot. If the block before it is
+/// one of another zone, over which this zone cannot send a robot away again, also those that are still busy in there.
+fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl Iterator<Item = u32> {
+    let dead_ends = ground.dead_ends();
+    let is_edge = dead_ends.out(door).is_some_and(|out| !ledger.territory().contains(out));
+    let leaves = move |member: &Member| {
+        let goal = member.request.goal;
+        let goes_out = member.wants_to_go() && (goal == door || !dead_ends.is_behind(goal, door));
+        let is_busy = is_edge && (member.wants_to_go() || member.request.standing == Standing::Stays);
+        (goes_out || is_busy) && dead_ends.is_behind(member.end(), door)
+    };
+    let others = ledger.members().iter().filter(move |(other, member)| **other != robot && leaves(member));
+    others.map(|(other, _)| *other)
 }
 
 impl Round<'_> {
@@ -98,7 +124,7 @@ impl Round<'_> {
         if self.decided.contains(&robot) || member.steps.len() > 2 {
             return;
         }
-        let outcome = self.advance(robot, false, LINE);
+        let outcome = self.advance(robot, None, LINE);
         if outcome != Outcome::Granted
             && let Some(member) = self.ledger.member_mut(robot)
         {
@@ -107,30 +133,33 @@ impl Round<'_> {
     }
 
     /// Looks for a maneuver for the first robot for which nobody can make way.
-    fn maneuver(&mut self, order: &[(Reverse<u64>, u32)]) -> Option<Maneuver> {
+    fn maneuver(&mut self, order: &[u32]) -> Option<Maneuver> {
         let is_stuck = |robot: &u32| {
-            let waited = self.ledger.member(*robot).map_or(0, |member| member.waited);
-            waited >= PATIENCE && waited.is_power_of_two() && !self.busy.contains(robot)
+            let Some(member) = self.ledger.member(*robot) else { return false };
+            // One that others come out to would push them back.
+            let has_right = self.comes_out(*robot, member.end(), member.request.goal).is_none();
+            let waited = member.waited;
+            waited >= PATIENCE && waited.is_power_of_two() && !self.busy.contains(robot) && has_right
         };
-        let stuck: Vec<u32> = order.iter().map(|(_, robot)| *robot).filter(is_stuck).take(SEARCHES).collect();
+        let stuck: Vec<u32> = order.iter().copied().filter(is_stuck).take(SEARCHES).collect();
         let mut found =
             stuck.into_iter().filter_map(|robot| Maneuver::find(robot, self.ledger, self.ground, &self.taken));
         let mut maneuver = found.next()?;
         maneuver.go_on(self.ledger, &mut self.granted).then_some(maneuver)
     }
 
-    /// Extends the passage of a robot. One that makes way for another moves anywhere; one that goes to its goal moves
-    /// closer to it.
-    fn advance(&mut self, robot: u32, makes_way: bool, line: u32) -> Outcome {
+    /// Extends the passage of a robot. One that makes way for another, on the way to that one's goal, moves anywhere;
+    /// one that goes to its goal moves closer to it.
+    fn advance(&mut self, robot: u32, makes_way: Option<Block>, line: u32) -> Outcome {
         self.decided.insert(robot);
         let Some(member) = self.ledger.member(robot) else { return Outcome::Refused };
         if member.request.standing != Standing::MakesWay || line == 0 {
             return Outcome::Refused;
         }
         let (end, goal) = (member.end(), member.request.goal);
-        for block in self.candidates(end, goal, makes_way) {
+        for block in self.candidates(robot, end, goal, makes_way) {
             if !self.ledger.territory().contains(block) {
-                if makes_way {
+                if makes_way.is_some() {
                     continue;
                 }
                 // The zone over there decides.
@@ -141,7 +170,7 @@ impl Round<'_> {
                     self.granted.insert(robot);
                     Outcome::Granted
                 }
-                Some(holder) if holder != robot => self.ask(holder, block, line),
+                Some(holder) if holder != robot => self.ask(holder, block, makes_way.unwrap_or(goal), line),
                 _ => Outcome::Refused,
             };
             if outcome != Outcome::Refused {
@@ -151,8 +180,8 @@ impl Round<'_> {
         Outcome::Refused
     }
 
-    /// Asks the holder of a block to leave it.
-    fn ask(&mut self, holder: u32, block: Block, line: u32) -> Outcome {
+    /// Asks the holder of a block to leave it, to one on its way to a goal.
+    fn ask(&mut self, holder: u32, block: Block, goal: Block, line: u32) -> Outcome {
         let Some(member) = self.ledger.member(holder) else { return Outcome::Refused };
         if member.end() != block {
             // It is on its way to the end of its passage, which nobody can take from it.
@@ -161,14 +190,27 @@ impl Round<'_> {
         if self.decided.contains(&holder) {
             return Outcome::Refused;
         }
-        match self.advance(holder, true, line - 1) {
+        match self.advance(holder, Some(goal), line - 1) {
             Outcome::Refused => Outcome::Refused,
             Outcome::Granted | Outcome::Waits => Outcome::Waits,
         }
     }
 
-    /// The blocks beside the end of a passage, the best first.
-    fn candidates(&mut self, end: Block, goal: Block, makes_way: bool) -> Vec<Block> {
+    /// The robot that comes out of the dead end with a goal of another one, if that is beside it or in it, and has to
+    /// wait; and the block over which it comes.
+    fn comes_out(&self, robot: u32, end: Block, goal: Block) -> Option<(Block, u32)> {
+        let door = self.ground.dead_ends().door(end, goal)?;
+        coming_out(self.ledger, self.ground, door, robot).next().map(|other| (door, other))
+    }
+
+    /// True if another robot comes out of the dead end into which this block leads from the end of a passage.
+    fn is_kept_free(&self, robot: u32, (end, block, goal): (Block, Block, Block)) -> bool {
+        let door = self.ground.dead_ends().door_behind(end, block, goal);
+        door.is_some_and(|door| coming_out(self.ledger, self.ground, door, robot).next().is_some())
+    }
+
+    /// The blocks beside the end of a robot's passage, the best first.
+    fn candidates(&mut self, robot: u32, end: Block, goal: Block, makes_way: Option<Block>) -> Vec<Block> {
         let here = self.ground.cost(end, goal);
         let mut candidates: Vec<(u32, bool, Block)> = Vec::with_capacity(4);
         for block in end.neighbours() {
@@ -176,11 +218,20 @@ impl Round<'_> {
                 continue;
             }
             let cost = self.ground.cost(block, goal);
-            if !makes_way && (cost >= here || cost == UNREACHABLE) {
+            let is_deeper = self.ground.dead_ends().out(block) == Some(end);
+            let is_in_vain = match makes_way {
+                // The other one wants to go there, too.
+                Some(other) => is_deeper && self.ground.dead_ends().is_behind(other, block),
+                None => cost >= here || cost == UNREACHABLE || self.is_kept_free(robot, (end, block, goal)),
+            };
+            if is_in_vain {
                 continue;
             }
             let is_held = self.ledger.holder(block).is_some();
-            candidates.push((cost.saturating_add(if is_held { MOVE / 2 } else { 0 }), is_held, block));
+            // One that makes way deeper into a dead end soon comes out again, and asks in its turn.
+            let comes_back = makes_way.is_some() && is_deeper;
+            let worse = if is_held { MOVE / 2 } else { 0 } + if comes_back { 2 * MOVE } else { 0 };
+            candidates.push((cost.saturating_add(worse), is_held, block));
         }
         candidates.sort_unstable();
         candidates.into_iter().map(|(_, _, block)| block).collect()
@@ -192,8 +243,12 @@ impl Round<'_> {
         let (end, goal) = (member.end(), member.request.goal);
         // A robot that can still drive does not wait.
         let waits = member.waited > 0 && member.steps.len() < 2;
-        let best = if waits { self.candidates(end, goal, false).into_iter().next() } else { None };
-        let in_the_way = best.and_then(|block| Some((block, self.ledger.holder(block)?)));
+        let best = if waits { self.candidates(robot, end, goal, None).into_iter().next() } else { None };
+        let in_the_way = match best {
+            Some(block) => self.ledger.holder(block).map(|holder| (block, holder)),
+            None if waits => self.comes_out(robot, end, goal),
+            None => None,
+        };
         let Some(member) = self.ledger.member_mut(robot) else { return false };
         std::mem::replace(&mut member.in_the_way, in_the_way) != in_the_way
     }
@@ -211,7 +266,7 @@ impl Round<'_> {
             if !is_needed && member.steps.len() > self.ahead {
                 return;
             }
-            let best = self.candidates(end, goal, false).into_iter().next();
+            let best = self.candidates(robot, end, goal, None).into_iter().next();
             let Some(block) = best.filter(|block| is_needed || self.is_quiet(*block, robot)) else { return };
             if !self.ledger.grant(robot, block) {
                 return;

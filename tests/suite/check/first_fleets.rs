@@ -40,6 +40,25 @@ fn the_distance_of_luggage_is_that_of_the_robot_whose_battery_is_named() {
 }
 
 #[test]
+fn robots_that_share_a_charger_which_cannot_keep_them_charged_are_told() {
+    let robots = |charge: &'static str| {
+        let places = [("0", "5"), ("3", "5"), ("6", "5")];
+        let values = places.map(|(x, y)| {
+            let [level, at, gain] = [("dischargePerSecond", "6"), ("chargeY", "5"), ("chargePerSecond", charge)];
+            vec![level, at, gain, ("startX", x), ("startY", y)]
+        });
+        let fleet = ["Robot1", "Robot2", "Robot3"].into_iter().zip(&values);
+        let robots: Vec<Component<'_>> =
+            fleet.map(|(id, values)| (id, "saoms.Robot", values.as_slice(), true)).collect();
+        with("at 1s luggage (1,1) to (2,2)", &[&[WORLD, MASTER], robots.as_slice()].concat())
+    };
+    let message = "warning S5006 robots 1, 2, 3 share the charger at (0,5), and need it for 120 % of the time even if \
+        they never move";
+    assert_eq!(robots("9"), [message]);
+    assert_eq!(robots("20"), [""; 0]);
+}
+
+#[test]
 fn only_a_slip_in_the_name_of_a_robot_is_proposed() {
     let robots: Vec<Component<'_>> =
         vec![WORLD, MASTER, ROBOT, ("Robot02", "saoms.Robot", &[], true), ("Robot3", "saoms.Robot", &[], true)];

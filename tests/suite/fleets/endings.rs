@@ -74,10 +74,10 @@ fn sleepers_try_what_those_who_are_awake_refused() {
 }
 
 #[test]
-fn a_robot_whose_charger_is_out_of_reach_charges_at_a_free_one() {
-    // With this seed a robot that goes to charge has to make way until its battery does not last for the way any more.
+fn a_robot_whose_charger_is_behind_other_robots_charges_at_a_free_one() {
+    // With this seed a robot that goes to charge has to make way for long.
     let run = Fleet::of_file("composites/scenario4.composite").run(1088, LIMIT);
-    assert!(run.log().contains("this time: its own is out of reach"), "{}", run.log());
+    assert!(run.log().contains("this time: its own is behind other robots"), "{}", run.log());
     assert_eq!((luggage(&run, "delivered"), &run.sections["stranded"]), (100, &serde_json::json!(0)));
 }
 

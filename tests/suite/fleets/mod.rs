@@ -4,6 +4,7 @@ mod assignment;
 mod battery;
 mod charging;
 mod composites;
+mod crowded;
 mod dead_ends;
 mod divided;
 mod endings;

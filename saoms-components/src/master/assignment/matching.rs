@@ -20,8 +20,8 @@ pub(super) struct Task {
     pub(super) reach: u32,
 }
 
-/// Cost of a pair that cannot be.
-pub(super) const NEVER: i64 = i64::MAX / 4;
+/// Cost of a pair that cannot be: more than all others together, and little enough for sums over all rows.
+pub(super) const NEVER: i64 = 1 << 50;
 
 /// The pairs of least total cost, of rows and columns of a table of costs: for each row its column, as far as there is
 /// one that is not [`NEVER`]. This is the Hungarian method (Kuhn 1955) with potentials, in steps of rows x rows x
@@ -232,6 +232,16 @@ mod tests {
                 (0..columns).map(|column| costs.iter().map(|row| row[column]).collect()).collect()
             };
             assert_eq!(total, least(&all, 0, &mut vec![false; rows.max(columns)]), "{costs:?}");
+        }
+    }
+
+    #[test]
+    fn many_pairs_that_cannot_be_are_none() {
+        for rows in [6, 60] {
+            let mut costs = vec![vec![NEVER; rows + 4]; rows];
+            costs[rows / 2][1] = 3;
+            let found = least_total(&costs);
+            assert_eq!(found.iter().flatten().collect::<Vec<_>>(), [&1]);
         }
     }
 

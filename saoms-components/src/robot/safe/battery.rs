@@ -60,6 +60,13 @@ pub enum SafeBatterySymptom {
         /// Block of the other charger.
         other: Block,
     },
+    /// Others are in the way to the charger for long, and another charger is free.
+    HeldUp {
+        /// Block of the charger.
+        charger: Block,
+        /// Block of the other charger.
+        other: Block,
+    },
     /// The battery does not last for the way to the charger any more, and a free charger is closer.
     OutOfReach {
         /// Block of the charger.
@@ -124,6 +131,11 @@ impl Recordable for SafeBatterySymptom {
             SafeBatterySymptom::Empty => record!(battery_empty: "battery is empty"),
             SafeBatterySymptom::OutOfReach { charger, other } => record!(
                 charger_out_of_reach: "its charger at {charger} is out of reach, and the one at {other} is free",
+                charger,
+                other
+            ),
+            SafeBatterySymptom::HeldUp { charger, other } => record!(
+                held_up_on_way_home: "others are in the way to its charger at {charger}, and the one at {other} is free",
                 charger,
                 other
             ),
@@ -216,21 +228,29 @@ impl Loop for SafeBattery {
         } else if knowledge.is_at_charger() {
             let is_spared = |own: Block| self.gain.gives(own, context.now()) || knowledge.battery.is_full();
             let spared = self.own.is_none_or(is_spared);
-            let lasts = spared && self.own.is_none_or(|own| knowledge.lasts_to(own));
+            // Nobody is served by one that leaves the charger of another robot with no more than it needs to leave it.
+            let is_done = knowledge.is_well_charged() || knowledge.is_claimed(knowledge.charge_block);
+            let lasts = spared && self.own.is_none_or(|own| is_done && knowledge.lasts_to(own));
             (must_charge && lasts && knowledge.may_leave()).then_some(SafeBatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
             context.because(knowledge.energy.turned);
             Some(SafeBatterySymptom::Empty)
         } else if must_charge {
             let charger = knowledge.charge_block;
-            let other = match self.gain.gives(charger, context.now()) {
-                true => knowledge.charger_in_reach(|other| self.gain.gives(other, context.now())),
-                false => knowledge.charger_elsewhere(|other| self.gain.gives(other, context.now())),
+            let now = context.now();
+            let out_of_reach = |other| SafeBatterySymptom::OutOfReach { charger, other };
+            let symptom = if self.gain.gives(charger, now) {
+                knowledge.charger_in_reach(|other| self.gain.gives(other, now)).map(out_of_reach).or_else(|| {
+                    let other = knowledge.charger_on_detour(|other| self.gain.gives(other, now))?;
+                    Some(SafeBatterySymptom::HeldUp { charger, other })
+                })
+            } else {
+                knowledge.charger_elsewhere(|other| self.gain.gives(other, now)).map(out_of_reach)
             };
-            other.map(|other| {
+            if symptom.is_some() {
                 context.because(knowledge.energy.turned);
-                SafeBatterySymptom::OutOfReach { charger, other }
-            })
+            }
+            symptom
         } else if knowledge.goes_on() {
             None
         } else if knowledge.asked_to_charge && !knowledge.variables.busy {
@@ -257,7 +277,9 @@ impl Loop for SafeBattery {
             SafeBatterySymptom::NoGain { other: None, .. } => SafeBatteryDecision::Wait,
             SafeBatterySymptom::Charged { .. } => SafeBatteryDecision::Leave,
             SafeBatterySymptom::CutOff { other, .. } => SafeBatteryDecision::Use(other),
-            SafeBatterySymptom::OutOfReach { other, .. } => SafeBatteryDecision::Borrow(other),
+            SafeBatterySymptom::OutOfReach { other, .. } | SafeBatterySymptom::HeldUp { other, .. } => {
+                SafeBatteryDecision::Borrow(other)
+            }
             SafeBatterySymptom::Charge { begins, .. } => SafeBatteryDecision::BeInCharge(begins),
         }))
     }
@@ -298,7 +320,11 @@ impl Loop for SafeBattery {
             }
             SafeBatteryDecision::Borrow(other) => {
                 let charger = knowledge.charge_block;
-                let why = if self.gain.gives(charger, context.now()) { "is out of reach" } else { "gives nothing" };
+                let why = match self.gain.gives(charger, context.now()) {
+                    false => "gives nothing",
+                    true if knowledge.executions_left() > knowledge.home(knowledge.next) => "is behind other robots",
+                    true => "is out of reach",
+                };
                 self.own = self.own.or(Some(charger));
                 knowledge.turn_back();
                 knowledge.use_charger(other);
@@ -345,8 +371,31 @@ impl RobotKnowledge {
         if self.executions_left() > home || self.next != self.block {
             return None;
         }
-        let (_, closest) = self.closest_charger(false, gives)?;
+        let left = self.executions_left();
+        let unclaimed = self.unclaimed_charger(&gives).filter(|closest| self.home_to(*closest) < left);
+        let closest = unclaimed.or_else(|| self.closest_charger(false, gives).map(|(_, closest)| closest))?;
         (self.home_to(closest) < home).then_some(closest)
+    }
+
+    /// The closest free charger to which no other robot is on its way because it has to charge.
+    fn unclaimed_charger(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
+        let places = self.lists.charging_places.iter().copied();
+        let claimed: Vec<Block> = places.filter(|charger| self.is_claimed(*charger)).collect();
+        let (_, closest) = self.closest_charger(false, |charger| gives(charger) && !claimed.contains(&charger))?;
+        Some(closest)
+    }
+
+    /// The closest free charger to which no other robot is on its way, if others have held the robot up on the way to
+    /// its own for as long as the way there takes, and the battery lasts for that.
+    fn charger_on_detour(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
+        let (held_up, own) = (self.energy.held_up(), self.charge_block);
+        if held_up == 0 || self.next != self.block {
+            return None;
+        }
+        let closest = self.unclaimed_charger(|charger| charger != own && gives(charger))?;
+        let there = self.home_to(closest);
+        let lasts = self.executions_left() > there.saturating_add(self.usual_reserve() / 2);
+        (held_up >= there && lasts).then_some(closest)
     }
 
     /// The closest of these chargers, those without a robot first, or these alone: if another robot is there, the

@@ -26,6 +26,9 @@ const LEAST_RESERVE: u32 = 2;
 /// Number of returns to the charger during one job after which a robot checks if the job is possible at all.
 const IN_VAIN: u32 = 3;
 
+/// Number of ways to the charger after which most of a delay is forgotten.
+const DELAY_MEMORY: u32 = 8;
+
 /// Number of moves beyond the reserve that the battery has to last before a charging robot makes way for others.
 const YIELD_FROM: u32 = 3;
 
@@ -45,6 +48,39 @@ pub(crate) struct Energy {
     was_free: bool,
     /// True if its charger gave nothing not long ago.
     pub(super) gives_nothing: bool,
+    /// How it gets on with the way to its charger.
+    homeward: Homeward,
+    /// Number of executions by which its ways to the charger took longer than without other robots: the longest one, and
+    /// less with each further way.
+    delay: u32,
+}
+
+/// The way of a robot that has to charge.
+#[derive(Debug, Default, Clone, Field)]
+struct Homeward {
+    charger: Block,
+    /// The least number of moves to it so far.
+    least: u32,
+    /// Number of executions since then.
+    held_up: u32,
+    /// Number of executions so far, and those of the whole way without other robots.
+    taken: u32,
+    alone: u32,
+}
+
+impl Homeward {
+    /// Notes the number of moves that are left in this execution, and of executions without other robots.
+    fn note(&mut self, charger: Block, moves: u32, alone: u32) {
+        if self.taken == 0 {
+            self.alone = alone;
+        }
+        self.taken = self.taken.saturating_add(1);
+        if self.charger != charger || moves < self.least || self.taken == 1 {
+            (self.charger, self.least, self.held_up) = (charger, moves, 0);
+        } else {
+            self.held_up = self.held_up.saturating_add(1);
+        }
+    }
 }
 
 /// Result of comparing the battery with a job.
@@ -67,9 +103,28 @@ impl Energy {
         self.counted = must_charge;
     }
 
+    /// The way to the charger is over.
+    fn end_way_home(&mut self, arrived: bool) {
+        let Homeward { taken, alone, .. } = std::mem::take(&mut self.homeward);
+        if arrived && taken > 0 {
+            self.delay = (self.delay - self.delay.div_ceil(DELAY_MEMORY)).max(taken.saturating_sub(alone));
+        }
+    }
+
     /// Number of executions that a move takes.
     pub(super) fn executions_of_move(&self) -> u32 {
         self.pace.moving
+    }
+
+    /// Number of executions for which a robot that has to charge has not come closer to its charger, beyond those of
+    /// two moves.
+    pub(super) fn held_up(&self) -> u32 {
+        self.homeward.held_up.saturating_sub(2 * self.pace.moving)
+    }
+
+    /// True if collecting or depositing takes time.
+    pub(super) fn handles_long(&self) -> bool {
+        self.pace.handling > 1
     }
 
     /// Measured speed of the robot.
@@ -102,7 +157,14 @@ impl RobotKnowledge {
         }
         self.asked_to_charge = self.is_asked_home();
         self.lasts = self.executions_left();
-        self.way_home = self.home(self.next);
+        let way = self.routes.between(self.next, self.charge_block);
+        self.way_home = self.home_along(way);
+        if self.must_charge && !self.is_at_charger() {
+            let alone = self.energy.pace.job_alone(way, 0);
+            self.energy.homeward.note(self.charge_block, way, alone);
+        } else {
+            self.energy.end_way_home(self.is_at_charger());
+        }
         self.energy.was_free = self.takes_jobs();
     }
 
@@ -145,13 +207,14 @@ impl RobotKnowledge {
         Duration::from_micros(self.period)
     }
 
-    /// True if a robot at its charger has too little energy to make way for others, or shares it with others that can
-    /// wait.
+    /// True if a robot at its charger, or about to arrive there, has too little energy to make way for others, or shares
+    /// it with others that can wait.
     pub(super) fn holds_charger(&self) -> bool {
-        if !self.is_at_charger() {
+        // One that promised to make way before it arrives would leave without any gain, and come back, and so on.
+        if self.next != self.charge_block {
             return false;
         }
-        let wanted = self.usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
+        let wanted = self.least_usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
         self.executions_left() < wanted.min(self.executions_when_full()) || self.keeps_shared_charger()
     }
 
@@ -168,7 +231,11 @@ impl RobotKnowledge {
         }
         let left = self.executions_left();
         let reserve = self.reserve;
-        if left >= self.home(self.next).saturating_add(reserve) {
+        // What it is about to do here takes from the reserve, too.
+        let stands = self.next == self.block && self.hardware.running().is_none();
+        let is_there = stands && self.destination().is_some_and(|to| self.reaches(to, self.block));
+        let handling = if is_there && self.energy.handles_long() { self.energy.pace.handling } else { 0 };
+        if left >= self.home(self.next).saturating_add(reserve).saturating_add(handling) {
             return true;
         }
         let Some(job) = self.job.filter(|_| self.variables.busy) else { return false };
@@ -280,7 +347,19 @@ impl RobotKnowledge {
         self.energy.pace.moving.saturating_mul(u32::try_from(slower).unwrap_or(u32::MAX))
     }
 
+    /// True if half of the reserve for the way to its charger is used up.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.lasts <= self.way_home.saturating_add(self.usual_reserve() / 2)
+    }
+
     pub(super) fn usual_reserve(&self) -> u32 {
+        // Where robots crowd the ways to their chargers, each one has seen how much longer these can take.
+        let delay = self.energy.delay.saturating_add(self.energy.delay / 4);
+        self.least_usual_reserve().max(delay.min(self.executions_when_full() / 2))
+    }
+
+    /// The reserve where no other robots have been in the way: one that charges does not keep others waiting for more.
+    fn least_usual_reserve(&self) -> u32 {
         let full = self.executions_when_full();
         let usual = RESERVE.saturating_mul(self.tempo()).max(full / 4).min(full / 3);
         // Where zones answer late, robots that meet wait for them.
@@ -325,7 +404,11 @@ impl RobotKnowledge {
     fn home_along(&self, way: u32) -> u32 {
         // One that is on the way home already has them.
         let has_grants = self.must_charge && self.zones.as_ref().is_some_and(|zones| zones.may_drive());
-        self.energy.pace.job(way, 0).saturating_add(if way == 0 || has_grants { 0 } else { self.latency() })
+        // More than half of a full battery for waiting cannot be had: a robot that planned with it would never leave
+        // its charger.
+        let (waiting, alone) = (self.energy.pace.job(way, 0), self.energy.pace.job_alone(way, 0));
+        let executions = waiting.min(alone.max(self.executions_when_full() / 2));
+        executions.saturating_add(if way == 0 || has_grants { 0 } else { self.latency() })
     }
 
     /// Number of executions that zones take to answer; 0 where there are none.

@@ -2,8 +2,10 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 
 use crate::grid::Block;
 use crate::hardware::Action;
-use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage};
+use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage, Position};
 use crate::robot::{Job, JobEnd, RobotKnowledge};
+
+use super::leg::Urgency;
 
 /// Uses the gripper: collects luggage at its block and deposits it at its destination. Notes blocks that the robot
 /// visits.
@@ -179,6 +181,19 @@ impl RobotKnowledge {
     pub(super) fn job_here(&mut self) -> Option<Job> {
         let destination = self.destination()?;
         let stands = self.next == self.block && self.reaches(destination, self.block);
-        self.job.filter(|_| stands && self.may_handle())
+        self.job.filter(|_| stands && self.may_handle() && !self.leaves_block())
+    }
+
+    /// True if a robot beside this one hardly reaches its charger, and has to pass this block, which this robot would
+    /// keep while it handles its luggage.
+    fn leaves_block(&self) -> bool {
+        let (at, chargers) = (self.block, &self.lists.chargers);
+        let comes_here = |other: &Position| {
+            let place = chargers.binary_search_by_key(&other.robot, |(robot, _)| *robot);
+            let is_own = other.priority.robot == other.robot;
+            other.wanted == at || is_own && place.is_ok_and(|place| chargers[place].1 == at)
+        };
+        let waits = |other: &&Position| Urgency::Exhausted.is_of(other.priority) && other.block.distance(at) == 1;
+        self.energy.handles_long() && self.traffic.near().iter().filter(waits).any(comes_here)
     }
 }

@@ -24,11 +24,17 @@ pub(super) enum Urgency {
     Job,
     /// Reaching the charger in time.
     Energy,
-    /// Reaching a charger where another robot is, with a battery that hardly lasts.
+    /// Reaching the charger with a battery that hardly lasts.
     Exhausted,
 }
 
 impl Urgency {
+    /// True if a robot has this priority because of such a way or a more urgent one, and not because it makes way for
+    /// another one.
+    pub(super) fn is_at_most(self, robot: u32, priority: Priority) -> bool {
+        priority.robot == robot && (self as u64..=Urgency::Exhausted as u64).contains(&(priority.rank >> AGE_BITS))
+    }
+
     /// True if a robot has this priority because of such a way.
     pub(super) fn is_of(self, priority: Priority) -> bool {
         priority.rank >> AGE_BITS == self as u64
@@ -63,8 +69,9 @@ impl RobotKnowledge {
     /// The goal and its urgency, as the knowledge has them now.
     pub(super) fn leg_now(&self) -> (Option<Block>, Urgency) {
         let (goal, urgency) = if self.must_charge {
-            let urgency = if self.cannot_wait() { Urgency::Exhausted } else { Urgency::Energy };
-            (Some(self.charge_block), urgency)
+            // Once for a way: robots that swap their priorities would push each other back and forth.
+            let is_exhausted = self.leg.urgency == Urgency::Exhausted || self.is_exhausted();
+            (Some(self.charge_block), if is_exhausted { Urgency::Exhausted } else { Urgency::Energy })
         } else if let Some(destination) = self.destination() {
             (Some(destination), Urgency::Job)
         } else if self.variables.transporter || self.offers_help || self.lingers > 0 {
@@ -82,7 +89,9 @@ impl RobotKnowledge {
     pub(super) fn set_leg(&mut self, now: Time) {
         let (goal, urgency) = self.leg_now();
         if (goal, urgency) != (self.leg.goal, self.leg.urgency) {
-            self.leg = Leg { goal, urgency, since: now };
+            // One that looks for another charger has waited all the same.
+            let goes_on = urgency == self.leg.urgency && urgency >= Urgency::Energy;
+            self.leg = Leg { goal, urgency, since: if goes_on { self.leg.since } else { now } };
         }
         if let Some(goal) = goal {
             self.routes.head_for(goal);

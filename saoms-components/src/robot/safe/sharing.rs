@@ -5,6 +5,7 @@
 //! first one can then wait itself: it lets the other one charge until that has enough. So of two robots that need a
 //! charger one is always served, and neither drives the other away before it has gained something.
 
+use crate::grid::Block;
 use crate::messages::{IMMOVABLE, Position};
 use crate::robot::RobotKnowledge;
 
@@ -34,13 +35,14 @@ impl RobotKnowledge {
         if self.must_charge { keeps && !self.is_exhausted() } else { keeps || self.is_well_charged() }
     }
 
-    /// True if its battery hardly lasts for the way to a charger where another robot is.
-    pub(super) fn cannot_wait(&self) -> bool {
-        self.is_exhausted() && self.at_shared_charger().is_some()
-    }
-
-    fn is_exhausted(&self) -> bool {
-        self.lasts <= self.way_home.saturating_add(self.usual_reserve() / 2)
+    /// True if another robot is on its way to this charger, which it has to reach in time.
+    pub(super) fn is_claimed(&self, charger: Block) -> bool {
+        let comes = |robot: u32| {
+            let position = self.lists.peers.get(robot).filter(|_| self.lists.is_active(robot));
+            position.is_some_and(|at| at.block != charger && Urgency::Energy.is_at_most(robot, at.priority))
+        };
+        let mut users = self.lists.chargers.iter().filter(|(robot, used)| *used == charger && *robot != self.number);
+        users.any(|(robot, _)| comes(*robot))
     }
 
     fn at_shared_charger(&self) -> Option<&Position> {

@@ -202,6 +202,7 @@ impl Traffic {
         }
         let here = goal.map_or(0, |goal| routes.to_goal(at, goal));
         let ahead = self.ahead_of_asker(at);
+        let own_way = first_toward(at, goal, routes);
         let best = at
             .neighbours()
             .into_iter()
@@ -217,7 +218,9 @@ impl Traffic {
                 {
                     return None;
                 }
-                let keeps_out = self.leaving.is_some() || (makes_way && (goal.is_none() || cost >= here));
+                // One that comes out of a dead end passes another branch of it, where this one waits that wants to go in.
+                let passes = coming_out.is_some() && out != own_way;
+                let keeps_out = self.leaving.is_some() || (makes_way && !passes && (goal.is_none() || cost >= here));
                 if keeps_out && way_out(block, routes) == Some(at) {
                     // The other robot would follow, and neither could leave.
                     return None;

@@ -1,13 +1,13 @@
 //! Rules: work that exceeds the energy of the robots.
 //!
-//! Every robot has its own charger, where it starts (rule S5003 ensures that), so only the work can be too much:
-//! luggage farther away than a full battery lasts, or luggage that arrives permanently faster than the robots can bring
-//! it and charge.
+//! The work can be too much: luggage farther away than a full battery lasts, or luggage that arrives permanently faster
+//! than the robots can bring it and charge. So can robots that start apart from a charger that they share.
 
 mod load;
 mod missed;
 mod pairs;
 mod reach;
+mod shared;
 mod useless;
 
 use std::time::Duration;
@@ -28,6 +28,7 @@ use crate::robot::{Battery, Policy};
 use load::overloaded;
 use missed::Missed;
 use reach::{Ways, out_of_reach};
+use shared::overused;
 use useless::useless;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -36,7 +37,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         name: "unsustainable",
         meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or one \
             robot's charger is too far from all of it, or luggage without an end comes faster than the robots \
-            can deliver it and charge.",
+            can deliver it and charge. Or robots share a charger that cannot keep them charged.",
         severity: Severity::Error,
         rule: None,
     },
@@ -99,7 +100,7 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
     let is_timeless = is_by_distance && !findings.is_empty();
     // Luggage that no robot can bring is no load. What a classic robot does in a time with an empty battery is unknown.
     if findings.is_empty() && is_safe {
-        findings.extend(overloaded(&area, &ranges, luggage, &mut ways));
+        findings.extend(overused(fleet, &robots, &ranges).or_else(|| overloaded(&area, &ranges, luggage, &mut ways)));
     }
     let times = (!is_timeless).then_some(&ranges[0]);
     findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], times)).collect()
@@ -151,6 +152,8 @@ struct Range {
     /// Number of executions off the charger for which the energy of one execution at the charger lasts; `None` without
     /// discharge.
     charge_factor: Option<f64>,
+    /// Part of the time for which the robot has to be at its charger if it stands still in the rest of it.
+    charging_at_rest: f64,
     /// Number of executions of a move.
     moving: u32,
     /// Number of executions of collecting or depositing.
@@ -178,10 +181,12 @@ impl Range {
         // A classic robot drives on with an empty battery.
         let is_limited = robot.properties.policy == Policy::Safe;
         let charge_factor = consumption.charge_factor(period, moving).filter(|_| is_limited);
+        let at_rest = consumption.charge_factor(period, u32::MAX).filter(|_| is_limited);
         let full = Battery::new(100.0, consumption).executions_when_full(period, moving);
         Some(Range {
             charger: robot.charger,
             charge_factor,
+            charging_at_rest: at_rest.map_or(0.0, |factor| 1.0 / (1.0 + factor)),
             full: if is_limited { full } else { u32::MAX },
             moving,
             handling: executions(area.properties.handling_time),
