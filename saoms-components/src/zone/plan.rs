@@ -102,16 +102,19 @@ fn order(ledger: &Ledger, ground: &Ground) -> Vec<u32> {
     order.into_iter().map(|(_, _, robot)| robot).collect()
 }
 
-/// The robots that want to leave a dead end through one of its blocks, or to that block, other than this robot. If the block before it is
-/// one of another zone, over which this zone cannot send a robot away again, also those that are still busy in there.
+/// The robots that want to leave a dead end through one of its blocks, other than this robot; also those that want to
+/// that block, and are in the way of this one. If the block before it is one of another zone, over which this zone cannot
+/// send a robot away again, also those that are still busy in there.
 fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl Iterator<Item = u32> {
     let dead_ends = ground.dead_ends();
+    let there = ledger.member(robot).map(|member| member.request.goal);
     let is_edge = dead_ends.out(door).is_some_and(|out| !ledger.territory().contains(out));
     let leaves = move |member: &Member| {
-        let goal = member.request.goal;
-        let goes_out = member.wants_to_go() && (goal == door || !dead_ends.is_behind(goal, door));
+        let (goal, end) = (member.request.goal, member.end());
+        let goes_there = goal == door && there.is_some_and(|there| dead_ends.is_behind(there, end));
+        let goes_out = member.wants_to_go() && (goes_there || !dead_ends.is_behind(goal, door));
         let is_busy = is_edge && (member.wants_to_go() || member.request.standing == Standing::Stays);
-        (goes_out || is_busy) && dead_ends.is_behind(member.end(), door)
+        (goes_out || is_busy) && dead_ends.is_behind(end, door)
     };
     let others = ledger.members().iter().filter(move |(other, member)| **other != robot && leaves(member));
     others.map(|(other, _)| *other)
