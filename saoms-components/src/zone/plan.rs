@@ -103,8 +103,8 @@ fn order(ledger: &Ledger, ground: &Ground) -> Vec<u32> {
 }
 
 /// The robots that want to leave a dead end through one of its blocks, other than this robot; also those that want to
-/// that block, and are in the way of this one. If the block before it is one of another zone, over which this zone cannot
-/// send a robot away again, also those that are still busy in there.
+/// that block, and are in the way of this one. If the block before it is one of another zone, over which this zone
+/// cannot send a robot away again, also those that are still busy in there.
 fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl Iterator<Item = u32> {
     let dead_ends = ground.dead_ends();
     let there = ledger.member(robot).map(|member| member.request.goal);

@@ -50,8 +50,8 @@ pub(crate) struct Energy {
     pub(super) gives_nothing: bool,
     /// How it gets on with the way to its charger.
     homeward: Homeward,
-    /// Number of executions by which its ways to the charger took longer than without other robots: the longest one, and
-    /// less with each further way.
+    /// Number of executions by which its ways to the charger took longer than without other robots: the longest one,
+    /// and less with each further way.
     delay: u32,
 }
 
@@ -207,8 +207,8 @@ impl RobotKnowledge {
         Duration::from_micros(self.period)
     }
 
-    /// True if a robot at its charger, or about to arrive there, has too little energy to make way for others, or shares
-    /// it with others that can wait.
+    /// True if a robot at its charger, or about to arrive there, has too little energy to make way for others, or
+    /// shares it with others that can wait.
     pub(super) fn holds_charger(&self) -> bool {
         // One that promised to make way before it arrives would leave without any gain, and come back, and so on.
         if self.next != self.charge_block {

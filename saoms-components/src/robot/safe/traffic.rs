@@ -218,7 +218,7 @@ impl Traffic {
                 {
                     return None;
                 }
-                // One that comes out of a dead end passes another branch of it, where this one waits that wants to go in.
+                // One that comes out of a dead end passes its other branches: in one this robot can wait.
                 let passes = coming_out.is_some() && out != own_way;
                 let keeps_out = self.leaving.is_some() || (makes_way && !passes && (goal.is_none() || cost >= here));
                 if keeps_out && way_out(block, routes) == Some(at) {
