@@ -1,6 +1,6 @@
 //! Rule: the parts of a map are not connected.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use saoms_api::Finding;
@@ -111,7 +111,7 @@ fn cut_off(reached: &mut Reached<'_>, piece: &LuggageLine, spot: &Spanned<Spot>)
 }
 
 /// Connected parts of a map.
-struct Parts {
+pub(super) struct Parts {
     /// Ranges of adjacent free blocks, row by row.
     ranges: Vec<FreeRange>,
     /// Index of each row's first range, and of the end of the last row.
@@ -130,7 +130,7 @@ struct FreeRange {
 impl Parts {
     /// Joins ranges that touch from row to row. The time depends on the number of blocked blocks and rows, not on the
     /// number of free blocks.
-    fn of(map: &Map) -> Parts {
+    pub(super) fn of(map: &Map) -> Parts {
         let (mut ranges, mut rows): (Vec<FreeRange>, Vec<usize>) = (Vec::new(), vec![0]);
         for row in 0..map.height() {
             let (mut above, end) = (rows.len().checked_sub(2).map_or(0, |row| rows[row]), ranges.len());
@@ -167,9 +167,18 @@ impl Parts {
     }
 
     /// The part of a block; `None` if it is blocked, or outside the map.
-    fn part(&self, block: Block) -> Option<u32> {
+    pub(super) fn part(&self, block: Block) -> Option<u32> {
         let (column, row) = (u32::try_from(block.x).ok()?, u32::try_from(block.y).ok()?);
         self.between(row, &(column..column + 1)).first().map(|range| range.part)
+    }
+
+    /// Number of blocks of each part.
+    pub(super) fn sizes(&self) -> HashMap<u32, usize> {
+        let mut sizes = HashMap::new();
+        for range in &self.ranges {
+            *sizes.entry(range.part).or_default() += (range.end - range.start) as usize;
+        }
+        sizes
     }
 }
 
@@ -186,8 +195,6 @@ fn root(ranges: &mut [FreeRange], mut range: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashMap;
-
     use saoms_api::Chance;
 
     use super::*;

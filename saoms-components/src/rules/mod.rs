@@ -54,4 +54,5 @@ saoms_api::fleet_rules!(
     scenario::strain::RULE,
     corridors::RULE,
     masters::FORGETS,
+    sustain::crowded::RULE,
 );

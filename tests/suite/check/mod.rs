@@ -2,6 +2,7 @@
 
 mod beside;
 mod cascades;
+mod crowds;
 mod first_fleets;
 mod hints;
 mod missing_loops;

@@ -28,7 +28,7 @@ fn component(line: &str) -> String {
 }
 
 /// The codes and messages of what is found in a fleet of these components, one a line.
-fn found(lines: &str) -> Vec<String> {
+pub(super) fn found(lines: &str) -> Vec<String> {
     let components: String = lines.lines().map(str::trim).filter(|line| !line.is_empty()).map(component).collect();
     let text = format!(
         "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:saoms=\"urn:saoms:1\" name=\"t\" \

@@ -85,6 +85,8 @@ pub(super) struct LuggageLine {
     text: usize,
     /// Time from one piece to the next, if they never end.
     pub(super) endless: Option<RandomRange<Duration>>,
+    /// True if its pieces are enough to keep several robots busy for a while.
+    pub(super) is_lasting: bool,
     pub(super) from: Spanned<Spot>,
     pub(super) to: Spanned<Spot>,
     /// True if a robot visits the two blocks, and brings nothing.
@@ -106,6 +108,9 @@ impl LuggageLine {
     }
 }
 
+/// Number of pieces of a line from which on they keep several robots busy for a while.
+const LASTING: u64 = 20;
+
 /// Luggage of all scenarios, and blocks to visit, two at a time; without wrong lines.
 pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<LuggageLine> {
     let mut all = Vec::new();
@@ -113,10 +118,11 @@ pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<LuggageLine> {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
         for line in scenario.lines() {
             let endless = (line.times.is_none() && line.until.is_none()).then_some(line.every);
+            let is_lasting = line.times.is_none_or(|times| times >= LASTING);
             let text = line.text as usize;
             let piece = |from: &Spanned<Spot>, to: &Spanned<Spot>, is_visit: bool| {
                 let (from, to) = (from.clone(), to.clone());
-                LuggageLine { index, text, endless, from, to, is_visit }
+                LuggageLine { index, text, endless, is_lasting, from, to, is_visit }
             };
             match &line.event {
                 EventSpec::Luggage { from, to } => all.push(piece(from, to, false)),

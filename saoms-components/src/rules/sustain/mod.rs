@@ -1,8 +1,9 @@
 //! Rules: work that exceeds the energy of the robots.
 //!
 //! The work can be too much: luggage farther away than a full battery lasts, or luggage that arrives permanently faster
-//! than the robots can bring it and charge. So can robots that start apart from a charger that they share.
+//! than the robots can bring it and charge. So can robots be that share a charger, or crowd a map.
 
+pub(super) mod crowded;
 mod load;
 mod missed;
 mod pairs;
@@ -28,7 +29,7 @@ use crate::robot::{Battery, Policy};
 use load::overloaded;
 use missed::Missed;
 use reach::{Ways, out_of_reach};
-use shared::overused;
+use shared::{contended, overused};
 use useless::useless;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -37,7 +38,8 @@ pub(super) static RULE: FleetRule = FleetRule {
         name: "unsustainable",
         meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or one \
             robot's charger is too far from all of it, or luggage without an end comes faster than the robots \
-            can deliver it and charge. Or robots share a charger that cannot keep them charged.",
+            can deliver it and charge. Or robots share a charger that cannot keep them charged, or that they need for \
+            most of the time.",
         severity: Severity::Error,
         rule: None,
     },
@@ -100,7 +102,14 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
     let is_timeless = is_by_distance && !findings.is_empty();
     // Luggage that no robot can bring is no load. What a classic robot does in a time with an empty battery is unknown.
     if findings.is_empty() && is_safe {
-        findings.extend(overused(fleet, &robots, &ranges).or_else(|| overloaded(&area, &ranges, luggage, &mut ways)));
+        let load = overloaded(&area, &ranges, luggage, &mut ways);
+        let is_certain = load.as_ref().is_some_and(|finding| finding.own_severity() == Some(Severity::Error));
+        let told = match load {
+            Some(load) if is_certain => Some(load),
+            load => overused(fleet, &robots, &ranges).or(load),
+        };
+        let is_lasting = luggage.iter().any(|piece| piece.is_lasting);
+        findings.extend(told.or_else(|| is_lasting.then(|| contended(fleet, &robots, &ranges)).flatten()));
     }
     let times = (!is_timeless).then_some(&ranges[0]);
     findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], times)).collect()
@@ -154,6 +163,8 @@ struct Range {
     charge_factor: Option<f64>,
     /// Part of the time for which the robot has to be at its charger if it stands still in the rest of it.
     charging_at_rest: f64,
+    /// The same where it drives in the rest of the time.
+    charging_at_work: f64,
     /// Number of executions of a move.
     moving: u32,
     /// Number of executions of collecting or depositing.
@@ -182,11 +193,13 @@ impl Range {
         let is_limited = robot.properties.policy == Policy::Safe;
         let charge_factor = consumption.charge_factor(period, moving).filter(|_| is_limited);
         let at_rest = consumption.charge_factor(period, u32::MAX).filter(|_| is_limited);
+        let charging = |factor: Option<f64>| factor.map_or(0.0, |factor| 1.0 / (1.0 + factor));
         let full = Battery::new(100.0, consumption).executions_when_full(period, moving);
         Some(Range {
             charger: robot.charger,
             charge_factor,
-            charging_at_rest: at_rest.map_or(0.0, |factor| 1.0 / (1.0 + factor)),
+            charging_at_rest: charging(at_rest),
+            charging_at_work: charging(charge_factor),
             full: if is_limited { full } else { u32::MAX },
             moving,
             handling: executions(area.properties.handling_time),
