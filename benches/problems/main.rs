@@ -58,7 +58,7 @@ struct Arguments {
     #[arg(long)]
     safe: bool,
     /// Executions of each robot in a step.
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 10)]
     executions: u32,
     /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]

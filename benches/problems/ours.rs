@@ -26,18 +26,28 @@ struct Tasks {
     longest: Duration,
     last: Duration,
     finished: usize,
+    /// When each robot that has tasks of its own did one last: it is shown the next one then.
+    free: HashMap<u32, Duration>,
 }
 
 /// A task that is visible, and not done.
 struct Open {
     since: Duration,
+    /// The robot that alone may do it; 0 for any.
+    owner: u32,
     /// The robot that has it now, and when it took it.
     taken: Option<(u32, Duration)>,
 }
 
 impl Tasks {
-    fn show(&mut self, number: u32, since: Duration) {
-        self.shown.entry(number).or_insert(Some(Open { since, taken: None }));
+    fn show(&mut self, number: u32, owner: u32, since: Duration) {
+        self.shown.entry(number).or_insert(Some(Open { since, owner, taken: None }));
+    }
+
+    /// How long a task was visible until a robot had it, or until now.
+    fn wait(&self, open: &Open, now: Duration) -> Duration {
+        let since = self.free.get(&open.owner).map_or(open.since, |free| open.since.max(*free));
+        open.taken.map_or(now, |(_, taken)| taken).saturating_sub(since)
     }
 
     fn take(&mut self, number: u32, robot: u32, at: Duration) {
@@ -55,7 +65,10 @@ impl Tasks {
 
     fn finish(&mut self, number: u32, at: Duration) {
         let Some(open) = self.shown.get_mut(&number).and_then(Option::take) else { return };
-        self.longest = self.longest.max(open.taken.map_or(at, |(_, taken)| taken) - open.since);
+        self.longest = self.longest.max(self.wait(&open, at));
+        if open.owner != 0 {
+            self.free.insert(open.owner, at);
+        }
         self.finished += 1;
         self.last = at;
     }
@@ -74,11 +87,11 @@ impl Observer for Watch {
         let at = sent.message.header().sent.since(saoms_api::Time::START);
         let mut tasks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(event) = sent.message.get::<EnvironmentEvent>() {
-            event.luggage.iter().for_each(|luggage| tasks.show(luggage.luggage, at));
+            event.luggage.iter().for_each(|luggage| tasks.show(luggage.luggage, 0, at));
         }
         // Some responses could be read as visits, too.
         if let Some(visit) = sent.message.get::<Visit>().filter(|visit| is_visit(visit.visit)) {
-            tasks.show(visit.visit, at);
+            tasks.show(visit.visit, visit.robot, at);
         }
         let Some(said) = sent.message.get::<EventLuggage>() else { return };
         match said.stage {
@@ -100,12 +113,7 @@ pub(crate) fn solve(problem: &Problem, fleet: &ProblemFleet, seed: u64) -> Outco
     let report = deploy::finish(RunningFleet::start(assembly, settings, vec![watch.clone()])?)?;
     let tasks = watch.0.lock().unwrap_or_else(PoisonError::into_inner);
     let in_steps = |time: Duration| time.div_duration_f64(fleet.step).ceil();
-    let waiting = tasks
-        .shown
-        .values()
-        .flatten()
-        .map(|open| open.taken.map_or(limit, |(_, taken)| taken).saturating_sub(open.since))
-        .max();
+    let waiting = tasks.shown.values().flatten().map(|open| tasks.wait(open, limit)).max();
     let collisions = &report.sections["collisions"];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a run has fewer steps")]
     Ok(Solved {
