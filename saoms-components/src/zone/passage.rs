@@ -51,6 +51,8 @@ pub(crate) struct Wish {
     pub(crate) standing: Standing,
     /// Number of blocks that it needs granted ahead, so that it does not wait for grants.
     pub(crate) ahead: u32,
+    /// A block of another zone to which it makes way, and the rank of the robot for which it does.
+    pub(crate) aside: Option<(Block, u64)>,
 }
 
 impl Passage {
@@ -99,6 +101,12 @@ impl Passage {
     /// The last block that the robot holds.
     pub(crate) fn end(&self) -> Block {
         self.held.last().map_or(Block::default(), |held| held.step.block)
+    }
+
+    /// True if the block is in another zone than the end of the passage.
+    pub(crate) fn is_over_edge(&self, block: Block) -> bool {
+        let zone = |block: Block| self.territories.iter().find(|one| one.contains(block)).map(|one| one.zone);
+        zone(block).is_some_and(|there| zone(self.end()).is_some_and(|here| here != there))
     }
 
     /// Takes in the territory of a zone.
@@ -202,7 +210,9 @@ impl Passage {
             let of_zone: Vec<Step> = held.iter().filter(|held| held.zone == zone).map(|held| held.step).collect();
             let is_near = one.territory.contains(end)
                 || goal != end && end.neighbours().into_iter().any(|block| one.territory.contains(block));
-            let is_concerned = is_near || !of_zone.is_empty();
+            let aside = wish.aside.filter(|(block, _)| one.territory.contains(*block));
+            let is_concerned = is_near || aside.is_some() || !of_zone.is_empty();
+            let (goal, rank) = aside.unwrap_or((goal, wish.rank));
             // Each zone has to hear once in its term what each robot holds.
             let is_new = one.said.term != one.territory.term;
             let request = GrantRequest {
@@ -219,7 +229,7 @@ impl Passage {
                 held: of_zone,
                 goal: if is_concerned { goal } else { end },
                 charger: wish.charger,
-                rank: if is_concerned { wish.rank } else { 0 },
+                rank: if is_concerned { rank } else { 0 },
                 standing: wish.standing,
                 ahead: if is_concerned { wish.ahead } else { 0 },
             };

@@ -15,6 +15,8 @@ struct Site<'s> {
     /// Percent of a battery: for a block, for a second off the charger, and gained in a second at the charger.
     battery: (f64, f64, f64),
     has_zone: bool,
+    /// First column of a second zone.
+    border: Option<u32>,
     assignment: &'s str,
     /// The charger of each robot, the block where it starts, and its battery there.
     robots: &'s [((i32, i32), (i32, i32), f64)],
@@ -37,7 +39,11 @@ impl Site<'_> {
         let times = [("moveTime", self.times.0.to_string()), ("handlingTime", self.times.1.to_string())];
         let mut text = component("World", "World", &[&[("map", format!("\n{}\n", self.map))], &times[..]].concat());
         if self.has_zone {
-            text += &component("Zone", "Zone", &[]);
+            let width = self.border.map(|border| ("width", border.to_string()));
+            text += &component("Zone", "Zone", width.as_slice());
+        }
+        if let Some(border) = self.border {
+            text += &component("Zone2", "Zone", &[("number", "2".to_owned()), ("x", border.to_string())]);
         }
         text += &component("Master", "MasterEnvironment", &[("assignment", self.assignment.to_owned())]);
         text += &component("Environment", "Environment", &[("scenario", self.scenario.to_owned())]);
@@ -81,6 +87,7 @@ fn a_robot_that_arrives_at_a_charger_that_it_shares_stays_there() {
             times: (500, 0),
             battery: (0.2, 1.7, 10.0),
             has_zone,
+            border: None,
             assignment: "robots",
             robots: &[((2, 2), (2, 4), 18.0), ((2, 2), (4, 2), 17.0)],
             scenario: "at 20s 2 times luggage (0,0) to (4,4)",
@@ -99,6 +106,7 @@ fn robots_do_not_queue_in_a_dead_end_out_of_which_others_come() {
             times: (200, 500),
             battery: (0.5, 0.1, 10.0),
             has_zone,
+            border: None,
             assignment: "optimal",
             robots: &[(4, 4), (4, 5), (4, 6), (3, 6), (2, 6)].map(|block| (block, block, 100.0)),
             scenario: "from 1s every 500ms 30 times luggage (0,0)..(0,3) to (1,4)..(4,6); \
@@ -120,12 +128,33 @@ fn robots_whose_chargers_are_behind_a_narrow_door_do_not_strand_before_it() {
             times: (200, 0),
             battery: (0.0, 1.5, 15.0),
             has_zone,
+            border: None,
             assignment: "oldest",
             robots: &[(0, 0), (0, 1), (0, 5), (4, 0), (4, 2), (4, 5)].map(|block| (block, block, 100.0)),
             scenario: "from 1s every 500ms 120 times luggage random to random",
         };
         for seed in 0..4 {
             assert_served(&site.run(seed), 120, &format!("zone {has_zone}, seed {seed}"));
+        }
+    }
+}
+
+#[test]
+fn robots_make_way_into_the_zone_that_they_come_from() {
+    for (times, battery) in [((200, 0), (0.1, 3.0, 40.0)), ((200, 500), (0.1, 2.5, 40.0))] {
+        let site = Site {
+            // The border is at the end of the passage: a robot that has just entered it can go back over there alone.
+            map: "...@@@....\n...@@@....\n..........\n...@@@....\n...@@@....",
+            times,
+            battery,
+            has_zone: true,
+            border: Some(3),
+            assignment: "robots",
+            robots: &[(0, 0), (0, 4), (0, 1), (0, 3)].map(|block| (block, block, 100.0)),
+            scenario: "from 1s every 500ms 60 times luggage random to random",
+        };
+        for seed in 0..4 {
+            assert_served(&site.run(seed), 60, &format!("battery {battery:?}, seed {seed}"));
         }
     }
 }

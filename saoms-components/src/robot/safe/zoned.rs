@@ -5,7 +5,7 @@ use saoms_api::{Context, Failure};
 use super::leg::Urgency;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
-use crate::messages::{IMMOVABLE, Position, Standing};
+use crate::messages::{IMMOVABLE, Position, Priority, Standing};
 use crate::robot::HEARD;
 use crate::robot::RobotKnowledge;
 use crate::zone::{MOST_AHEAD, Wish};
@@ -44,12 +44,14 @@ impl RobotKnowledge {
         self.aim_in_zones();
         let begun = self.begun_blocks();
         let ahead = self.blocks_ahead();
+        let aside = self.aside_over_edge();
         let wish = Wish {
             goal: self.goal_in_zones(),
             charger: self.charge_block,
             rank: self.leg.priority(self.number).rank,
             standing: self.standing(),
             ahead,
+            aside,
         };
         let Some(zones) = &mut self.zones else { return Ok(()) };
         if wish.standing != Standing::MakesWay {
@@ -66,7 +68,7 @@ impl RobotKnowledge {
         let (charger, begun) = (self.charge_block, self.begun_blocks());
         let Some(zones) = &mut self.zones else { return Ok(()) };
         zones.leave(begun);
-        zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0 })
+        zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0, aside: None })
     }
 
     /// Repeats where the robot is and what it does from time to time: on a network where updates get lost, others may
@@ -132,6 +134,28 @@ impl RobotKnowledge {
         let stays = self.is_bound() || self.job_here().is_some() || self.holds_charger();
         let asked = self.zones.as_ref().and_then(|zones| zones.asked);
         asked.or_else(|| self.leg.goal.filter(|_| self.leg.urgency != Urgency::None)).filter(|_| !stays)
+    }
+
+    /// A block of another zone to which the robot makes way for one of higher priority, and the rank of that one: its
+    /// own zone has no free block for it.
+    fn aside_over_edge(&mut self) -> Option<(Block, u64)> {
+        if self.standing() != Standing::MakesWay {
+            return None;
+        }
+        let RobotKnowledge { zones: Some(zones), lists, routes, leg, number, next, .. } = self else { return None };
+        let asker = lists.peers.get(zones.asker()?)?;
+        let Priority { rank, .. } = asker.priority;
+        let has_right = asker.priority > leg.priority(*number) && asker.priority != IMMOVABLE;
+        if !has_right || asker.next.distance(*next) != 1 {
+            return None;
+        }
+        let beside = next.neighbours().into_iter().filter(|block| routes.is_free(*block) && *block != asker.next);
+        let (over, own): (Vec<Block>, Vec<Block>) = beside.partition(|block| zones.is_over_edge(*block));
+        if own.iter().any(|block| lists.peers.on(*block).is_none()) {
+            return None;
+        }
+        let best = over.into_iter().min_by_key(|block| (lists.peers.on(*block).is_some(), routes.is_charger(*block)));
+        best.map(|block| (block, rank))
     }
 
     fn standing(&mut self) -> Standing {

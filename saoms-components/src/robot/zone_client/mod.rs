@@ -56,6 +56,8 @@ pub(crate) struct ZoneClient {
     pub(super) asked: Option<Block>,
     /// The block that another robot has to leave first, and that robot.
     in_the_way: Option<InTheWay>,
+    /// The robot that waits until this one leaves the end of its passage.
+    asker: Option<u32>,
     latency: Latency,
     hears_around: Option<Block>,
 }
@@ -130,6 +132,7 @@ impl ZoneClient {
             rested: false,
             asked: None,
             in_the_way: None,
+            asker: None,
             latency: Latency::default(),
             hears_around: None,
         }))
@@ -196,6 +199,7 @@ impl ZoneClient {
             grants,
             validator,
             in_the_way,
+            asker,
             latency,
             aimed,
             rested,
@@ -215,8 +219,12 @@ impl ZoneClient {
             }
         }
         for (header, grant) in context.receive(grants).with_headers() {
-            if grant.robot == passage.robot() && validator.accepts(grant, header, area, context) && passage.hear(grant)
-            {
+            if grant.robot != passage.robot() {
+                let asks = (grant.waits_for, grant.wanted) == (passage.robot(), passage.end());
+                if (asks || *asker == Some(grant.robot)) && validator.accepts(grant, header, area, context) {
+                    *asker = asks.then_some(grant.robot);
+                }
+            } else if validator.accepts(grant, header, area, context) && passage.hear(grant) {
                 let waits = grant.waits_for != 0;
                 *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
                 latency.hears(grant.zone, grant.heard);
@@ -247,6 +255,16 @@ impl ZoneClient {
     pub(crate) fn in_the_way(&self) -> Option<InTheWay> {
         let passage = self.passage.as_ref()?;
         self.in_the_way.filter(|wait| passage.next().is_none() && wait.block.distance(passage.end()) == 1)
+    }
+
+    /// The robot that waits until this one leaves its block, if this one can drive no further.
+    pub(crate) fn asker(&self) -> Option<u32> {
+        self.asker.filter(|_| !self.may_drive())
+    }
+
+    /// True if the block is in another zone than the end of the passage.
+    pub(crate) fn is_over_edge(&self, block: Block) -> bool {
+        self.passage.as_ref().is_some_and(|passage| passage.is_over_edge(block))
     }
 
     /// True if the robot may drive on.

@@ -240,6 +240,7 @@ impl State {
             rank: if goal.is_some() { 10 - rank } else { 0 },
             standing: Standing::MakesWay,
             ahead: one.needed,
+            aside: None,
         };
         for request in one.passage.requests(wish, again) {
             self.send(Message::Request(request));
