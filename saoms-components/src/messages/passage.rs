@@ -126,8 +126,8 @@ pub struct GrantRequest {
 
 /// Where a robot is, and of which zones it holds nothing.
 ///
-/// It answers all zones that ask where the robot is, but for those of which it holds blocks or to which it drives: these
-/// get a request.
+/// It answers all zones that ask where the robot is, but for those of which it holds blocks or to which it drives:
+/// these get a request.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
 #[message(
     key = "robot",

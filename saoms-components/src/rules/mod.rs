@@ -7,7 +7,6 @@ mod apart;
 mod budget;
 mod charger;
 mod classic_walls;
-mod corridors;
 mod divided;
 mod environments;
 mod hearing;
@@ -52,7 +51,7 @@ saoms_api::fleet_rules!(
     peers::FAULTS,
     peers::BROKER,
     scenario::strain::RULE,
-    corridors::RULE,
+    zones::corridors::RULE,
     masters::FORGETS,
     sustain::crowded::RULE,
 );

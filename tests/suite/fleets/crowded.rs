@@ -6,6 +6,9 @@ use saoms_testkit::{Fleet, Run};
 
 const HOUR: Duration = Duration::from_secs(3600);
 
+/// The charger of a robot, the block where it starts, and its battery there.
+type RobotOfSite = ((i32, i32), (i32, i32), f64);
+
 /// A site with robots that all have the same battery.
 struct Site<'s> {
     /// The rows of the map.
@@ -18,8 +21,7 @@ struct Site<'s> {
     /// First column of a second zone.
     border: Option<u32>,
     assignment: &'s str,
-    /// The charger of each robot, the block where it starts, and its battery there.
-    robots: &'s [((i32, i32), (i32, i32), f64)],
+    robots: &'s [RobotOfSite],
     scenario: &'s str,
 }
 

@@ -1,12 +1,14 @@
 //! Rule: zones do not fit each other, the map or the robots.
 
+pub(super) mod corridors;
+
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::missing_loop::CLASSIC_PATH_FOLLOWER;
-use super::robots::robots;
 use crate::grid::{Block, Map};
 use crate::messages::{GRANT, GRANT_REQUEST, POSITION, ROBOT_LIST, Territory};
+use crate::rules::missing_loop::CLASSIC_PATH_FOLLOWER;
+use crate::rules::robots::robots;
 use crate::world::World;
 use crate::zone::{Zone, ZoneProperties};
 

@@ -5,11 +5,11 @@ use std::collections::HashSet;
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
-use super::zones::ZoneOfSite;
+use super::ZoneOfSite;
 use crate::grid::{Block, Map};
 use crate::zone::Zone;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5027",
         name: "corridor-zone",
