@@ -139,6 +139,8 @@ pub struct GrantRequest {
 pub struct Presence {
     /// Number of the robot.
     pub robot: u32,
+    /// Number that grows when the robot begins anew, without memory of its grants. It is not 0.
+    pub incarnation: u64,
     /// Position of the robot.
     pub block: Block,
     /// End of the robot's passage: the last block that it holds.

@@ -74,7 +74,7 @@ struct State {
     ledger: Ledger,
     maneuvers: Vec<Maneuver>,
     ground: Ground,
-    /// Blocks of robots that cannot move any more, as far as these or others have said so.
+    /// Blocks of robots that cannot move any more, as far as these or others have said so last.
     lost: BTreeMap<u32, Vec<Block>>,
 }
 
@@ -195,7 +195,7 @@ impl Zone {
 
     fn serve(&mut self, state: &mut State, context: &mut Context<'_>) -> Result<(), Failure> {
         let mut changed = self.hear(state, context);
-        self.hear_presence(state, context);
+        changed.extend(self.hear_presence(state, context));
         changed.extend(self.hear_gone(state, context));
         if !self.is_open(state, context)? {
             // It begins a new record once all have answered.
@@ -241,10 +241,11 @@ impl Zone {
                 self.heard.insert(header.sender);
             }
             let spoke = self.spoke.entry(request.robot).or_default();
-            if header.sent >= *spoke && request.standing != Standing::Lost {
-                lost.remove(&request.robot);
+            if header.sent >= *spoke {
+                *spoke = header.sent;
+                let is_lost = request.standing == Standing::Lost;
+                note_lost(lost, request.robot, is_lost.then_some([request.block, request.end]));
             }
-            *spoke = header.sent.max(*spoke);
             ground.add_charger(request.charger);
             let heard = ledger.hear(request);
             // While it is closed, the other one may have to say yet that it is somewhere else.
@@ -261,16 +262,22 @@ impl Zone {
         changed
     }
 
-    /// Takes in where robots of the whole site are.
-    fn hear_presence(&mut self, state: &mut State, context: &mut Context<'_>) {
+    /// Takes in where robots of the whole site are. Returns those whose record has changed.
+    fn hear_presence(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
+        let mut changed = BTreeSet::new();
         let State { ledger, ground, lost, .. } = state;
         let &Territory { zone, term, .. } = ledger.territory();
         for (header, presence) in context.receive(&self.presences).with_headers() {
             if !self.validator.accepts(presence, header, Some(ground.map()), context) {
                 continue;
             }
-            if !self.open && presence.clear.contains(&ClearTerm { zone, term }) {
-                self.heard.insert(header.sender);
+            if presence.clear.contains(&ClearTerm { zone, term }) {
+                if !self.open {
+                    self.heard.insert(header.sender);
+                }
+                if ledger.hear_clear(presence.robot, presence.incarnation) {
+                    changed.insert(presence.robot);
+                }
             }
             let spoke = self.spoke.entry(presence.robot).or_default();
             if header.sent < *spoke {
@@ -278,12 +285,9 @@ impl Zone {
             }
             *spoke = header.sent;
             ground.add_charger(presence.charger);
-            if presence.is_lost {
-                lost.insert(presence.robot, vec![presence.block, presence.end]);
-            } else {
-                lost.remove(&presence.robot);
-            }
+            note_lost(lost, presence.robot, presence.is_lost.then_some([presence.block, presence.end]));
         }
+        changed
     }
 
     /// Frees the blocks of robots that somebody took off the floor. Those whose component failed keep the block where a
@@ -389,6 +393,14 @@ impl Zone {
         let planned = plan::plan(ledger, maneuvers, ground, self.properties.ahead as usize);
         ledger.end_round();
         planned
+    }
+}
+
+/// Notes the blocks of a robot that cannot move any more, or that it can.
+fn note_lost(lost: &mut BTreeMap<u32, Vec<Block>>, robot: u32, blocks: Option<[Block; 2]>) {
+    match blocks {
+        Some(blocks) => _ = lost.insert(robot, blocks.to_vec()),
+        None => _ = lost.remove(&robot),
     }
 }
 

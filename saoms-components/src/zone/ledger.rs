@@ -52,11 +52,9 @@ impl Member {
         self.request.standing == Standing::Lost || self.silent > SILENT
     }
 
-    /// The blocks that it keeps as an obstacle, also those of other zones.
+    /// The blocks of the zone that it holds.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = Block> {
-        let is_lost = self.request.standing == Standing::Lost;
-        let said = [self.request.block, self.request.end].into_iter().filter(move |_| is_lost);
-        self.steps.iter().map(|step| step.block).chain(said)
+        self.steps.iter().map(|step| step.block)
     }
 
     /// True if it wants to go somewhere else.
@@ -113,11 +111,12 @@ impl Ledger {
     }
 
     /// The component of a robot failed: it cannot move any more, until it says something new. If it is known on which
-    /// of its blocks it was stopped, the others are free: nobody is left to enter them.
+    /// of its blocks it was stopped, or that it is in another zone, the others are free: nobody is left to enter them.
     pub(crate) fn stop(&mut self, robot: u32, at: Option<Block>) {
         let Some(member) = self.members.get_mut(&robot) else { return };
         member.request.standing = Standing::Lost;
-        let Some(at) = at.filter(|at| member.steps.iter().any(|step| step.block == *at)) else { return };
+        let is_its = |at: &Block| member.steps.iter().any(|step| step.block == *at) || !self.territory.contains(*at);
+        let Some(at) = at.filter(is_its) else { return };
         let (kept, freed): (Vec<Step>, Vec<Step>) = member.steps.iter().partition(|step| step.block == at);
         member.steps = kept;
         for step in &freed {
@@ -207,6 +206,28 @@ impl Ledger {
         let granted = steps.iter().map(|step| step.number).max().unwrap_or(0).max(request.received);
         self.members.insert(request.robot, Member::new(request.clone(), steps, granted));
         conflict.unwrap_or(Heard::News)
+    }
+
+    /// Takes in that this incarnation of a robot held nothing in this term when it began, or later. What it held in
+    /// earlier ones is free. False if the zone has heard of this incarnation before.
+    pub(crate) fn hear_clear(&mut self, robot: u32, incarnation: u64) -> bool {
+        let Some(known) = self.members.get(&robot).filter(|known| known.request.incarnation < incarnation) else {
+            return false;
+        };
+        // It stays known, so that a late request of an earlier incarnation means nothing.
+        let request = GrantRequest {
+            incarnation,
+            number: 0,
+            received: 0,
+            held: Vec::new(),
+            goal: known.request.end,
+            rank: 0,
+            standing: Standing::MakesWay,
+            ahead: 0,
+            ..known.request.clone()
+        };
+        self.adopt(&request);
+        true
     }
 
     /// Counts the round for robots that could go on and say nothing.

@@ -125,8 +125,15 @@ impl Passage {
             }
             link.territory.clone_from(territory);
         }
-        for held in self.held.iter_mut().filter(|held| held.zone == 0 && territory.contains(held.step.block)) {
-            held.zone = territory.zone;
+        let Passage { held, territories, .. } = self;
+        for held in held {
+            // A zone that begins anew with other blocks takes some from another one, or leaves them to it.
+            if territory.contains(held.step.block) {
+                held.zone = territory.zone;
+            } else if held.zone == territory.zone {
+                let other = territories.iter().find(|other| other.contains(held.step.block));
+                held.zone = other.map_or(0, |other| other.zone);
+            }
         }
         self.linked = None;
     }
@@ -233,8 +240,9 @@ impl Passage {
                 standing: wish.standing,
                 ahead: if is_concerned { wish.ahead } else { 0 },
             };
-            // A zone that the robot has left need not know where it is now.
-            let is_news = if is_concerned || is_new {
+            let is_unheard = again && one.heard < one.said.number;
+            // A zone that the robot has left need not know where it is now; but its answer has to reach the robot.
+            let is_news = if is_concerned || is_new || is_unheard {
                 // The zone need not hear of another latency by itself.
                 GrantRequest { ahead: one.said.ahead, ..request.clone() } != one.said
             } else {
@@ -244,7 +252,7 @@ impl Passage {
             if is_news {
                 one.said = GrantRequest { number: one.said.number + 1, ..request };
             }
-            if is_news || again && one.heard < one.said.number {
+            if is_news || is_unheard {
                 requests.push(one.said.clone());
             }
         }

@@ -40,6 +40,8 @@ pub(crate) struct ZoneClient {
     said_lost: Option<bool>,
     /// Its charger, as it said last.
     said_charger: Block,
+    /// Number of times when a repetition of where it is was due.
+    due: u32,
     /// For repetitions of what loops said; `None` where the robot has no loop that says it.
     pub(super) positions: Option<Publisher<Position>>,
     pub(super) robots: Option<Publisher<RobotList>>,
@@ -123,6 +125,7 @@ impl ZoneClient {
             is_asked: false,
             said_lost: None,
             said_charger: Block::default(),
+            due: 0,
             positions: None,
             robots: None,
             validator: MessageValidator::default(),
@@ -185,7 +188,7 @@ impl ZoneClient {
     pub(crate) fn enter(&mut self, context: &Context<'_>, robot: u32, block: Block) {
         if self.passage.is_none() {
             let born = context.date().unwrap_or_else(|| context.now().since(Time::START));
-            let incarnation = u64::try_from(born.as_nanos()).unwrap_or(u64::MAX);
+            let incarnation = u64::try_from(born.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
             self.passage = Some(Passage::new(robot, incarnation, block));
         }
     }
@@ -353,12 +356,17 @@ impl ZoneClient {
         Ok(())
     }
 
-    /// Repeats where the robot is, if it cannot move any more or could not some time.
+    /// Repeats where the robot is: each time if it cannot move any more or could not some time, else after twice as
+    /// many times as before, since no zone confirms it.
     ///
     /// # Errors
     /// The message cannot be sent.
     pub(crate) fn repeat_presence(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.said_lost.map_or(Ok(()), |is_lost| self.tell_presence(context, is_lost))
+        self.due = self.due.saturating_add(1);
+        if self.said_lost.is_none() && !self.due.is_power_of_two() {
+            return Ok(());
+        }
+        self.tell_presence(context, self.said_lost.unwrap_or(false))
     }
 
     /// Says where the robot is, to all zones.
@@ -373,6 +381,7 @@ impl ZoneClient {
         let block = passage.held().first().map_or(Block::default(), |held| held.step.block);
         let presence = Presence {
             robot: passage.robot(),
+            incarnation: passage.incarnation(),
             block,
             end: passage.end(),
             is_lost,

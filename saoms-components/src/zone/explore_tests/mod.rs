@@ -81,8 +81,8 @@ enum Message {
     Territory(u32, Territory),
     Request(GrantRequest),
     Grant(Grant),
-    /// What a robot says to all zones, as one of them hears it.
-    Clear(u32, ClearTerm),
+    /// What an incarnation of a robot says to all zones, as one of them hears it.
+    Clear(u32, u64, ClearTerm),
 }
 
 impl Message {
@@ -92,7 +92,7 @@ impl Message {
             Message::Territory(_, territory) => (territory.term, 0),
             Message::Request(request) => (request.incarnation, request.number),
             Message::Grant(grant) => (grant.heard, grant.steps.last().map_or(0, |step| step.number)),
-            Message::Clear(_, clear) => (clear.term, 0),
+            Message::Clear(_, incarnation, clear) => (clear.term, *incarnation),
         }
     }
 }
@@ -133,7 +133,7 @@ impl Scenario {
                     zone.ledger.hear(&request);
                     zone.unheard.remove(&request.robot);
                 }
-                Message::Clear(robot, clear) => _ = state.zones[clear.zone as usize - 1].unheard.remove(&robot),
+                Message::Clear(robot, _, clear) => _ = state.zones[clear.zone as usize - 1].unheard.remove(&robot),
                 Message::Territory(..) | Message::Grant(_) => {}
             }
         }
@@ -201,7 +201,7 @@ impl State {
             (Message::Territory(one, a), Message::Territory(other, b)) => one == other && a.zone == b.zone,
             (Message::Request(one), Message::Request(other)) => one.link == other.link,
             (Message::Grant(one), Message::Grant(other)) => one.link == other.link,
-            (Message::Clear(one, a), Message::Clear(other, b)) => one == other && a.zone == b.zone,
+            (Message::Clear(one, _, a), Message::Clear(other, _, b)) => one == other && a.zone == b.zone,
             _ => false,
         };
         let earlier = self.network.iter().filter(|other| same(other)).min_by_key(|other| other.age()).cloned();
@@ -226,8 +226,8 @@ impl State {
     fn answer(&mut self, robot: usize) {
         self.request(robot, false);
         let passage = &self.robots[robot].passage;
-        let (number, clear) = (passage.robot(), passage.clear());
-        clear.into_iter().for_each(|clear| self.send(Message::Clear(number, clear)));
+        let (number, incarnation, clear) = (passage.robot(), passage.incarnation(), passage.clear());
+        clear.into_iter().for_each(|clear| self.send(Message::Clear(number, incarnation, clear)));
     }
 
     fn request(&mut self, robot: usize, again: bool) {
@@ -290,10 +290,11 @@ impl State {
                     self.plan(zone, false, ground, rules);
                 }
             }
-            Message::Clear(robot, clear) => {
+            Message::Clear(robot, incarnation, clear) => {
                 let zone = clear.zone as usize - 1;
                 let is_of_term = clear.term == self.zones[zone].ledger.territory().term;
-                if is_of_term && self.zones[zone].unheard.remove(robot) {
+                let is_news = is_of_term && self.zones[zone].ledger.hear_clear(*robot, *incarnation);
+                if is_of_term && self.zones[zone].unheard.remove(robot) || is_news {
                     self.plan(zone, false, ground, rules);
                 }
             }
@@ -362,7 +363,11 @@ impl State {
                     let known = known.iter().find(|known| known.zone == territory.zone);
                     (robot, territory.zone, known.is_some_and(|known| known.term >= territory.term))
                 }
-                Message::Clear(robot, clear) => (robot, clear.zone, true),
+                Message::Clear(robot, incarnation, clear) => {
+                    let member = zones[clear.zone as usize - 1].ledger.member(*robot);
+                    let is_known = member.is_none_or(|member| member.request.incarnation >= *incarnation);
+                    (robot, clear.zone, is_known || clear.term < zones[clear.zone as usize - 1].ledger.territory().term)
+                }
                 Message::Request(_) | Message::Grant(_) => return true,
             };
             !is_known || faults.zones > 0 || zones[zone as usize - 1].unheard.contains(robot)
