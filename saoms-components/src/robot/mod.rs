@@ -11,7 +11,6 @@ mod battery;
 mod catch_up;
 pub mod classic;
 mod console;
-mod gain;
 mod hardware_client;
 mod job;
 mod knowledge;

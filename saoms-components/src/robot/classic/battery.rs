@@ -1,7 +1,7 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, info, record};
 
 use crate::robot::RobotKnowledge;
-use crate::robot::gain::Gain;
+use crate::robot::battery::gain::Gain;
 
 /// Battery level at which a robot has to charge, in percent.
 const LOW: f64 = 35.0;

@@ -1,7 +1,7 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record};
 
 use crate::grid::{Block, UNREACHABLE};
-use crate::robot::gain::Gain;
+use crate::robot::battery::gain::Gain;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::{RobotKnowledge, Trouble};
 

@@ -1,3 +1,5 @@
+pub(in crate::robot) mod gain;
+
 use std::fmt;
 use std::time::Duration;
 

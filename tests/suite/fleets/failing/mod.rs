@@ -1,0 +1,8 @@
+//! Components that fail, pause or leave, and how runs end.
+
+mod endings;
+mod failures;
+mod goes_on;
+mod gone;
+mod pause;
+mod replace;
