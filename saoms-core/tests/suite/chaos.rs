@@ -81,7 +81,7 @@ fn fleet() -> impl Strategy<Value = String> {
 fn fault() -> impl Strategy<Value = String> {
     let topic = prop_oneof![Just(""), Just(" on TALK"), Just(" on TABLE"), Just(" on OWN to C*")];
     let ends = (0..6_u32, 0..6_u32);
-    let kind = (topic, ends, 0..40_u64, 0..=100_u32).prop_flat_map(|(topic, (one, other), time, rate)| {
+    let kind = (topic, ends, 1..40_u64, 0..=100_u32).prop_flat_map(|(topic, (one, other), time, rate)| {
         prop_oneof![
             Just(format!("for {time}ms lose {rate} %{topic}")),
             Just(format!("for {time}ms violate {rate} %{topic}")),
