@@ -1,4 +1,4 @@
-//! Robots that are too many for their map, or for a charger that they share.
+//! Robots that are too many for their map, or for a charger that they share, and chargers in the way of others.
 
 use std::fmt::Write;
 
@@ -95,4 +95,36 @@ fn a_shared_charger_in_use_most_of_the_time_is_told_where_the_luggage_lasts() {
     // Luggage that is certainly too much is an error, which a warning does not hide.
     let too_much = told("from 1s every 1s luggage (1,1) to (7,7)", "0.5");
     assert!(too_much.len() == 1 && too_much[0].starts_with("S5006 luggage comes faster"), "{too_much:?}");
+}
+
+#[test]
+fn a_charger_in_the_only_way_to_another_one_is_told_where_batteries_hardly_last() {
+    // A dead end, three blocks long, beside a hall.
+    let site = |places: [(u32, u32); 2], discharge: &str, luggage: &str| {
+        let robots = (1..).zip(places).map(|(number, (x, y))| {
+            let battery = format!("dischargePerBlock={discharge}|chargePerSecond=10");
+            format!("Robot{number}:Robot:@World chargeX={x}|chargeY={y}|{battery}\n")
+        });
+        let robots: String = robots.collect();
+        let map = ["@@@......", ".........", "@@@......", "@@@......"].join("&#10;");
+        format!(
+            "World:World: map={map}|moveTime=1s\nEnvironment:Environment: scenario={luggage}\n\
+            Master:MasterEnvironment:\n{robots}"
+        )
+    };
+    let far = "from 1s every 5min luggage (3,1) to (8,3)";
+    let message = |charger: &str, robot: u32| {
+        format!(
+            "S5006 a robot that charges at {charger} is in the only way of robot {robot} to its charger, and it may be \
+            stranded while it waits: half of a battery does not last for the farthest luggage, there and back"
+        )
+    };
+    let told = |places: [(u32, u32); 2], discharge: &str, luggage: &str| found(&site(places, discharge, luggage));
+    assert_eq!(told([(2, 1), (1, 1)], "2.5", far), [message("(2,1)", 2)]);
+    assert_eq!(told([(1, 1), (2, 1)], "2.5", far), [message("(2,1)", 1)]);
+    // Half of a battery lasts.
+    assert_eq!(told([(2, 1), (1, 1)], "1.5", far), [""; 0]);
+    assert_eq!(told([(2, 1), (1, 1)], "2.5", "from 1s every 5min luggage (3,1) to (4,1)"), [""; 0]);
+    // Robots drive past the charger, or share it.
+    assert_eq!(told([(3, 1), (4, 1)], "2.5", far), [""; 0]);
 }

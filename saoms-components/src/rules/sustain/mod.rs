@@ -1,8 +1,10 @@
 //! Rules: work that exceeds the energy of the robots.
 //!
 //! The work can be too much: luggage farther away than a full battery lasts, or luggage that arrives permanently faster
-//! than the robots can bring it and charge. So can robots be that share a charger, or crowd a map.
+//! than the robots can bring it and charge. So can robots be that share a charger, are in each other's way to their
+//! chargers, or crowd a map.
 
+mod barred;
 pub(super) mod crowded;
 mod load;
 mod missed;
@@ -26,6 +28,7 @@ use crate::messages::EVENT_LUGGAGE;
 use crate::robot::safe::is_within;
 use crate::robot::{Battery, Policy};
 
+use barred::barred;
 use load::overloaded;
 use missed::Missed;
 use reach::{Ways, out_of_reach};
@@ -39,7 +42,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or one \
             robot's charger is too far from all of it, or luggage without an end comes faster than the robots \
             can deliver it and charge. Or robots share a charger that cannot keep them charged, or that they need for \
-            most of the time.",
+            most of the time, or one that charges is in the only way of others to their chargers.",
         severity: Severity::Error,
         rule: None,
     },
@@ -109,7 +112,8 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
             load => overused(fleet, &robots, &ranges).or(load),
         };
         let is_lasting = luggage.iter().any(|piece| piece.is_lasting);
-        findings.extend(told.or_else(|| is_lasting.then(|| contended(fleet, &robots, &ranges)).flatten()));
+        let told = told.or_else(|| is_lasting.then(|| contended(fleet, &robots, &ranges)).flatten());
+        findings.extend(told.or_else(|| barred(fleet, &area, (&robots, &ranges), luggage)));
     }
     let times = (!is_timeless).then_some(&ranges[0]);
     findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], times)).collect()

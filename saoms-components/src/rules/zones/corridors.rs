@@ -1,12 +1,12 @@
-//! Rule: zones in which robots cannot get past each other, though their map has room for that.
-
-use std::collections::HashSet;
+//! Rule: zones in which robots cannot get past each other, though their map has room for that, and zones that end in
+//! the middle of a corridor.
 
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::ZoneOfSite;
-use crate::grid::{Block, Map};
+use crate::grid::Block;
+use crate::rules::cuts::Cuts;
 use crate::zone::Zone;
 
 pub(in crate::rules) static RULE: FleetRule = FleetRule {
@@ -14,8 +14,8 @@ pub(in crate::rules) static RULE: FleetRule = FleetRule {
         id: "S5027",
         name: "corridor-zone",
         meaning: "A zone is one block wide somewhere, and the map is not: the other blocks are those of another zone, \
-            which grants them. A zone lets robots make way on its own blocks alone, so that robots that meet there may \
-            wait for each other for ever.",
+            which grants them. Or the border between two zones is in the middle of a corridor of the map. A zone lets \
+            robots make way on its own blocks alone, so that robots that meet there may wait for each other for ever.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -29,15 +29,58 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         .all::<Zone>()
         .filter_map(|(index, properties)| ZoneOfSite::of(fleet, index, &properties).ok().flatten())
         .collect();
-    zones.iter().filter(|zone| zones.iter().any(|other| zone.is_beside(other))).filter_map(corridor).collect()
+    let mut findings: Vec<Finding> =
+        zones.iter().filter(|zone| zones.iter().any(|other| zone.is_beside(other))).filter_map(corridor).collect();
+    for (place, zone) in zones.iter().enumerate() {
+        findings.extend(cut_corridor(fleet, zone, &zones[place + 1..]));
+    }
+    findings
+}
+
+/// The corridors of the map in which a zone ends and a later one begins.
+fn cut_corridor(fleet: &FleetView<'_>, zone: &ZoneOfSite<'_>, later: &[ZoneOfSite<'_>]) -> Option<Finding> {
+    let map = &zone.map;
+    let mut found: Vec<(Block, Block, &ZoneOfSite<'_>)> = Vec::new();
+    for other in later.iter().filter(|other| zone.is_beside(other)) {
+        // Robots cannot get past each other at either side: there is one way on, in the same zone.
+        let is_corridor = |block: Block, side: &ZoneOfSite<'_>| {
+            let is_free = |to: &Block| map.is_free(*to) && side.territory.contains(*to);
+            is_free(&block) && block.neighbours().iter().filter(|to| is_free(to)).count() == 1
+        };
+        let ends = (0..map.size()).map(|place| map.block(place)).filter(|block| is_corridor(*block, zone));
+        let steps = ends.flat_map(|end| end.neighbours().into_iter().map(move |to| (end, to)));
+        found.extend(steps.filter(|(_, to)| is_corridor(*to, other)).map(|(end, to)| (end, to, other)));
+    }
+    if !found.is_empty() {
+        let bridges = Cuts::of(map, |block| map.is_free(block)).bridges();
+        found.retain(|(end, to, _)| bridges.contains(&((*end).min(*to), (*end).max(*to))));
+    }
+    found.sort_by_key(|(end, ..)| (end.y, end.x));
+    let (end, to, other) = *found.first()?;
+    let more = match found.len() - 1 {
+        0 => String::new(),
+        1 => " (and in another corridor)".to_owned(),
+        more => format!(" (and in {more} other corridors)"),
+    };
+    let message = format!(
+        "the zone ends in the middle of a corridor, between {end} and {to}{more}: robots that meet there may wait for \
+         each other for ever"
+    );
+    Some(
+        Finding::new(zone.place(), message)
+            .label(other.place(), format!("`{}` goes on from there", fleet.components()[other.index].path))
+            .help(
+                "move the border, with `x`, `y`, `width` and `height`, to an end of the corridor, or let one zone have \
+                 both sides",
+            ),
+    )
 }
 
 /// The blocks of a zone that are a corridor only because of its borders.
 fn corridor(zone: &ZoneOfSite<'_>) -> Option<Finding> {
     let map = &zone.map;
     let of_zone = |block: Block| map.is_free(block) && zone.territory.contains(block);
-    let narrow = bridges(map, of_zone);
-    let mut narrow: Vec<(Block, Block)> = narrow.into_iter().collect();
+    let mut narrow: Vec<(Block, Block)> = Cuts::of(map, of_zone).bridges().into_iter().collect();
     // A block of its own is no way at all.
     let blocks = || (0..map.size()).map(|place| map.block(place)).filter(|block| of_zone(*block));
     let ways = |block: Block, is_free: &dyn Fn(Block) -> bool| {
@@ -46,7 +89,7 @@ fn corridor(zone: &ZoneOfSite<'_>) -> Option<Finding> {
     let alone = blocks().filter(|block| ways(*block, &of_zone) == 0 && ways(*block, &|to| map.is_free(to)) > 1);
     let mut found: Vec<Block> = alone.collect();
     if !narrow.is_empty() {
-        let everywhere = bridges(map, |block| map.is_free(block));
+        let everywhere = Cuts::of(map, |block| map.is_free(block)).bridges();
         narrow.retain(|edge| !everywhere.contains(edge));
         found.extend(narrow.into_iter().flat_map(|(one, other)| [one, other]));
     }
@@ -62,75 +105,4 @@ fn corridor(zone: &ZoneOfSite<'_>) -> Option<Finding> {
         "move the border, with `x`, `y`, `width` and `height`, so that the zone is at least two blocks wide there, or \
          let one zone have both sides",
     ))
-}
-
-/// The moves between free blocks without which one of both cannot be reached from the other: where robots cannot get
-/// past each other.
-fn bridges(map: &Map, is_free: impl Fn(Block) -> bool) -> HashSet<(Block, Block)> {
-    /// A block of the search, the one before, and the next of its neighbours to look at.
-    struct Visit {
-        place: usize,
-        before: usize,
-        next: usize,
-    }
-    const NONE: usize = usize::MAX;
-    let mut found = HashSet::new();
-    let mut order = vec![NONE; map.size()];
-    let mut low = order.clone();
-    let mut count = 0;
-    for start in 0..map.size() {
-        if order[start] != NONE || !is_free(map.block(start)) {
-            continue;
-        }
-        let mut stack = vec![Visit { place: start, before: NONE, next: 0 }];
-        (order[start], low[start]) = (count, count);
-        count += 1;
-        while let Some(Visit { place, before, next }) = stack.last_mut() {
-            let (place, before) = (*place, *before);
-            let neighbours = map.block(place).neighbours();
-            let Some(to) = neighbours.get(*next).copied() else {
-                stack.pop();
-                if before != NONE {
-                    low[before] = low[before].min(low[place]);
-                    if low[place] > order[before] {
-                        let (one, other) = (map.block(before), map.block(place));
-                        found.insert((one.min(other), one.max(other)));
-                    }
-                }
-                continue;
-            };
-            *next += 1;
-            let Some(to) = map.place(to).filter(|_| is_free(to)).filter(|to| *to != before) else { continue };
-            if order[to] == NONE {
-                (order[to], low[to]) = (count, count);
-                count += 1;
-                stack.push(Visit { place: to, before: place, next: 0 });
-            } else {
-                low[place] = low[place].min(order[to]);
-            }
-        }
-    }
-    found
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bridges_are_where_robots_cannot_get_past_each_other() {
-        let narrow = |text: &str| {
-            let map = Map::read(text).unwrap();
-            let mut found: Vec<String> = bridges(&map, |block| map.is_free(block))
-                .into_iter()
-                .map(|(one, other)| format!("{one}-{other}"))
-                .collect();
-            found.sort();
-            found.join(" ")
-        };
-        assert_eq!(narrow("...\n..."), "");
-        assert_eq!(narrow("..."), "(0,0)-(1,0) (1,0)-(2,0)");
-        assert_eq!(narrow("..@..\n.....\n..@.."), "(1,1)-(2,1) (2,1)-(3,1)");
-        assert_eq!(narrow("...\n.@.\n..."), "", "a ring");
-    }
 }
