@@ -222,7 +222,7 @@ pub struct Fault {
     pub robot: u32,
     /// Kind of the fault.
     pub kind: FaultKind,
-    /// Time of a failure.
+    /// Time of a failure, or of the event where that a robot is off the floor is said again.
     pub since: Option<Time>,
     /// Block where a robot that failed is, where a world knows it.
     pub block: Option<Block>,

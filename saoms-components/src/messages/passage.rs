@@ -188,7 +188,8 @@ pub struct Grant {
     pub robot: u32,
     /// Incarnation of the robot to which it is granted.
     pub incarnation: u64,
-    /// Number of the robot's newest request that the zone took in.
+    /// Number of the robot's newest request that the zone took in. The highest number of all says that somebody took
+    /// the robot off the floor, so that it holds nothing any more, and has to stop.
     pub heard: u64,
     /// Position of the robot, as the zone knows it.
     pub block: Block,
@@ -199,6 +200,9 @@ pub struct Grant {
     /// The block for which it waits.
     pub wanted: Block,
 }
+
+/// The number after which none follows: of the last request of a robot, and of the last step that it received.
+pub const LAST_NUMBER: u64 = u64::MAX;
 
 /// Number of a robot and a zone in one number, the key of their messages.
 pub fn link(zone: u32, robot: u32) -> u64 {

@@ -185,6 +185,9 @@ impl Component for Robot {
         self.knowledge.hear(&mut self.topics, context)?;
         if entered {
             self.knowledge.hear_zones(context)?;
+            if self.knowledge.zones.as_ref().is_some_and(|zones| zones.is_off_floor()) {
+                return self.knowledge.leave_floor(context);
+            }
         }
         self.knowledge.begin_execution(context)?;
         self.loops.monitor(&mut *self.knowledge, context)?;

@@ -119,7 +119,7 @@ impl RobotKnowledge {
             } else if fault.robot != self.number {
                 self.lists.gone.note(fault, header);
                 others.push(fault.robot);
-            } else if header.sent > began {
+            } else if fault.since.unwrap_or(header.sent) > began {
                 context.because(header.cause);
                 return None;
             }

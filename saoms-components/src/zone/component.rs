@@ -48,8 +48,8 @@ pub struct Zone {
     heard: BTreeSet<u32>,
     /// Robots that somebody took off the floor, until the zone grants.
     gone: BTreeSet<u32>,
-    /// When each robot spoke last.
-    spoke: BTreeMap<u32, Time>,
+    /// When each robot spoke.
+    spoke: BTreeMap<u32, Spoken>,
     /// True if the zone grants: all robots have said where they are.
     open: bool,
     /// Robots that the alerts about deadlocks are about.
@@ -66,6 +66,14 @@ pub struct Zone {
     grants: Publisher<Grant>,
     #[publishes(TERRITORY)]
     territories: Publisher<Territory>,
+}
+
+/// When a robot spoke in its newest incarnation.
+#[derive(Clone, Copy, Debug)]
+struct Spoken {
+    incarnation: u64,
+    first: Time,
+    last: Time,
 }
 
 /// The record of the grants, and the map.
@@ -240,9 +248,9 @@ impl Zone {
             if !self.open {
                 self.heard.insert(header.sender);
             }
-            let spoke = self.spoke.entry(request.robot).or_default();
-            if header.sent >= *spoke {
-                *spoke = header.sent;
+            if is_newest(&mut self.spoke, request.robot, request.incarnation, header.sent)
+                && !ledger.has_ended(request.robot, request.incarnation)
+            {
                 let is_lost = request.standing == Standing::Lost;
                 note_lost(lost, request.robot, is_lost.then_some([request.block, request.end]));
             }
@@ -279,11 +287,11 @@ impl Zone {
                     changed.insert(presence.robot);
                 }
             }
-            let spoke = self.spoke.entry(presence.robot).or_default();
-            if header.sent < *spoke {
+            if !is_newest(&mut self.spoke, presence.robot, presence.incarnation, header.sent)
+                || ledger.has_ended(presence.robot, presence.incarnation)
+            {
                 continue;
             }
-            *spoke = header.sent;
             ground.add_charger(presence.charger);
             note_lost(lost, presence.robot, presence.is_lost.then_some([presence.block, presence.end]));
         }
@@ -294,19 +302,27 @@ impl Zone {
     /// world stopped them, or all where that is not known. Returns those whose record has changed.
     fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
         let mut changed = BTreeSet::new();
-        for fault in context.receive(&self.faults).filter(|fault| fault.silences() && fault.robot != 0) {
+        let heard = context.receive(&self.faults).with_headers();
+        for (header, fault) in heard.filter(|(_, fault)| fault.silences() && fault.robot != 0) {
+            let spoken = self.spoke.get(&fault.robot);
             if fault.is_failure() {
                 // One that has begun anew since said what it holds.
-                let is_over = |spoke: &Time| fault.since.is_none_or(|since| *spoke > since);
-                if !self.spoke.get(&fault.robot).is_some_and(is_over) {
-                    let at = fault.block.filter(|_| self.spoke.contains_key(&fault.robot));
+                let is_over = |spoken: &Spoken| fault.since.is_none_or(|since| spoken.last > since);
+                let is_off = state.ledger.member(fault.robot).is_some_and(Member::is_over);
+                if !is_off && !spoken.is_some_and(is_over) {
+                    let at = fault.block.filter(|_| spoken.is_some());
                     state.lost.extend(at.map(|at| (fault.robot, vec![at])));
                     state.ledger.stop(fault.robot, at);
                     changed.insert(fault.robot);
                 }
                 continue;
             }
-            state.ledger.forget(fault.robot);
+            // A robot that began anew since then is back. Whether it did may be unknown when the event is said again.
+            let is_back = spoken.map(|spoken| spoken.first > fault.since.unwrap_or(header.sent));
+            if is_back.unwrap_or(fault.since.is_some()) {
+                continue;
+            }
+            state.ledger.end(fault.robot, spoken.map_or(0, |spoken| spoken.incarnation));
             state.lost.remove(&fault.robot);
             if !self.open {
                 self.gone.insert(fault.robot);
@@ -394,6 +410,19 @@ impl Zone {
         ledger.end_round();
         planned
     }
+}
+
+/// Notes that a robot spoke; `false` if it has said something newer before.
+fn is_newest(spoke: &mut BTreeMap<u32, Spoken>, robot: u32, incarnation: u64, sent: Time) -> bool {
+    let spoken = spoke.entry(robot).or_insert(Spoken { incarnation, first: sent, last: sent });
+    if incarnation > spoken.incarnation {
+        *spoken = Spoken { incarnation, first: sent, last: sent };
+    }
+    let is_newest = incarnation == spoken.incarnation && sent >= spoken.last;
+    if incarnation == spoken.incarnation {
+        (spoken.first, spoken.last) = (spoken.first.min(sent), spoken.last.max(sent));
+    }
+    is_newest
 }
 
 /// Notes the blocks of a robot that cannot move any more, or that it can.

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use crate::grid::Block;
-use crate::messages::{Grant, GrantRequest, Standing, Step, Territory, link};
+use crate::messages::{Grant, GrantRequest, LAST_NUMBER, Standing, Step, Territory, link};
 
 /// A zone's record of grants: which robot holds which of its blocks.
 ///
@@ -55,6 +55,11 @@ impl Member {
     /// The blocks of the zone that it holds.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = Block> {
         self.steps.iter().map(|step| step.block)
+    }
+
+    /// True if somebody took it off the floor, and it has not begun anew.
+    pub(crate) fn is_over(&self) -> bool {
+        self.request.number == LAST_NUMBER
     }
 
     /// True if it wants to go somewhere else.
@@ -237,8 +242,42 @@ impl Ledger {
         }
     }
 
-    /// Forgets a robot, which is off the floor; its blocks are free.
-    pub(crate) fn forget(&mut self, robot: u32) {
+    /// Somebody took a robot off the floor: this is the last word of its incarnation, and releases all of its blocks.
+    /// What it said before and what arrives late means nothing any more. The incarnation is needed where the zone has
+    /// no request of the robot; 0 if it is not known.
+    pub(crate) fn end(&mut self, robot: u32, incarnation: u64) {
+        let Territory { zone, term, corner, .. } = self.territory;
+        let known = self.members.get(&robot).map(|member| member.request.clone());
+        let Some(known) = known.or_else(|| {
+            let (end, link) = (corner, link(zone, robot));
+            let request =
+                GrantRequest { link, zone, term, robot, at: corner, block: corner, end, ..Default::default() };
+            (incarnation > 0).then_some(GrantRequest { charger: corner, ..request })
+        }) else {
+            return;
+        };
+        self.forget(robot);
+        let last = GrantRequest {
+            incarnation: incarnation.max(known.incarnation),
+            number: LAST_NUMBER,
+            received: LAST_NUMBER,
+            held: Vec::new(),
+            goal: known.end,
+            rank: 0,
+            standing: Standing::MakesWay,
+            ahead: 0,
+            ..known
+        };
+        self.members.insert(robot, Member::new(last, Vec::new(), LAST_NUMBER));
+    }
+
+    /// True if somebody took this incarnation of a robot off the floor.
+    pub(crate) fn has_ended(&self, robot: u32, incarnation: u64) -> bool {
+        self.members.get(&robot).is_some_and(|member| member.is_over() && incarnation <= member.request.incarnation)
+    }
+
+    /// Forgets a robot; its blocks are free.
+    fn forget(&mut self, robot: u32) {
         let Some(member) = self.members.remove(&robot) else { return };
         for step in &member.steps {
             self.free(step.block, robot);

@@ -1,5 +1,5 @@
 use crate::grid::Block;
-use crate::messages::{ClearTerm, Grant, GrantRequest, Standing, Step, Territory, link};
+use crate::messages::{ClearTerm, Grant, GrantRequest, LAST_NUMBER, Standing, Step, Territory, link};
 
 /// The blocks that a robot may enter: its part of the protocol.
 ///
@@ -201,7 +201,14 @@ impl Passage {
 
     /// The robot leaves the fleet: it takes no step any more that it has not received.
     pub(crate) fn leave(&mut self) {
-        self.links.iter_mut().for_each(|link| link.received = u64::MAX);
+        self.links.iter_mut().for_each(|link| link.received = LAST_NUMBER);
+    }
+
+    /// The robot leaves the floor: it holds nothing any more, and takes no step that it has not received.
+    pub(crate) fn leave_floor(&mut self) {
+        self.held.truncate(1);
+        self.held.iter_mut().for_each(|held| held.zone = 0);
+        self.leave();
     }
 
     /// The requests that have to be sent now: new ones, and with `again` also those that were not taken in.

@@ -400,7 +400,7 @@ impl MasterEnvironment {
         // Topics keep what robots that are gone said before.
         let gone: Vec<u32> = self.knowledge.open.gone().filter(|gone| *gone != robot).collect();
         for gone in gone {
-            context.send(&self.faults, Fault::gone(gone))?;
+            context.send(&self.faults, self.knowledge.open.gone_since(gone))?;
         }
         if self.knowledge.part.is_some() {
             // Who comes from elsewhere was told, and those that failed may be back there.

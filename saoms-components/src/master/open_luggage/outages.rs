@@ -109,6 +109,11 @@ impl OpenLuggage {
         self.gone.robots()
     }
 
+    /// What is said of a robot that is off the floor to those that start later.
+    pub(in crate::master) fn gone_since(&self, robot: u32) -> Fault {
+        Fault { since: self.gone.since(robot), ..Fault::gone(robot) }
+    }
+
     /// True if a robot is off the floor.
     pub(in crate::master) fn is_off_floor(&self, robot: u32) -> bool {
         self.gone.contains(robot)

@@ -60,13 +60,16 @@ impl RobotKnowledge {
         zones.ask(context, wish)
     }
 
-    /// Tells zones that the robot cannot move any more.
+    /// Tells zones that the robot cannot move any more, or is off the floor.
     ///
     /// # Errors
     /// The messages cannot be sent.
     pub(in crate::robot) fn leave_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let (charger, begun) = (self.charge_block, self.begun_blocks());
         let Some(zones) = &mut self.zones else { return Ok(()) };
+        if self.gone {
+            return zones.leave_floor(context, charger);
+        }
         zones.leave(begun);
         zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0, aside: None })
     }

@@ -6,8 +6,8 @@ use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
 use crate::grid::{Block, Map};
 use crate::messages::{
-    GRANT, GRANT_REQUEST, Grant, GrantRequest, PRESENCE, Position, Presence, RobotList, Standing, Step, TERRITORY,
-    Territory,
+    GRANT, GRANT_REQUEST, Grant, GrantRequest, LAST_NUMBER, PRESENCE, Position, Presence, RobotList, Standing, Step,
+    TERRITORY, Territory,
 };
 use crate::validation::MessageValidator;
 use crate::zone::{Held, Link, Passage, Wish};
@@ -325,6 +325,23 @@ impl ZoneClient {
         if let Some(passage) = &mut self.passage {
             passage.leave();
         }
+    }
+
+    /// Somebody took the robot off the floor: it holds nothing any more, wherever it was.
+    ///
+    /// # Errors
+    /// The messages cannot be sent.
+    pub(crate) fn leave_floor(&mut self, context: &mut Context<'_>, charger: Block) -> Result<(), Failure> {
+        if let Some(passage) = &mut self.passage {
+            passage.leave_floor();
+        }
+        self.is_asked = true;
+        self.ask(context, Wish { charger, ..Wish::default() })
+    }
+
+    /// True if a zone said that somebody took the robot off the floor.
+    pub(crate) fn is_off_floor(&self) -> bool {
+        self.passage.as_ref().is_some_and(|passage| passage.links().iter().any(|link| link.heard == LAST_NUMBER))
     }
 
     /// Sends what changed, or what was not confirmed for long.

@@ -45,6 +45,8 @@ struct Faults {
     robots: u8,
     /// Crashes of zones that lose their record.
     zones: u8,
+    /// Robots that somebody takes off the floor.
+    gone: u8,
 }
 
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -73,6 +75,7 @@ struct Robot {
     moving: Option<Block>,
     goal: Block,
     needed: u32,
+    is_gone: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -83,6 +86,8 @@ enum Message {
     Grant(Grant),
     /// What an incarnation of a robot says to all zones, as one of them hears it.
     Clear(u32, u64, ClearTerm),
+    /// To a zone: this robot is gone.
+    Gone(usize, u32),
 }
 
 impl Message {
@@ -93,6 +98,7 @@ impl Message {
             Message::Request(request) => (request.incarnation, request.number),
             Message::Grant(grant) => (grant.heard, grant.steps.last().map_or(0, |step| step.number)),
             Message::Clear(_, incarnation, clear) => (clear.term, *incarnation),
+            Message::Gone(..) => (0, 0),
         }
     }
 }
@@ -112,7 +118,7 @@ impl Scenario {
         });
         let fleet = self.robots.iter().zip(1..).map(|(&(at, goal), robot)| {
             let (at, goal) = (Block::new(at.0, at.1), Block::new(goal.0, goal.1));
-            Robot { passage: Passage::new(robot, 1, at), at, moving: None, goal, needed: self.needed }
+            Robot { passage: Passage::new(robot, 1, at), at, moving: None, goal, needed: self.needed, is_gone: false }
         });
         let mut state = State {
             zones: zones.collect(),
@@ -134,7 +140,7 @@ impl Scenario {
                     zone.unheard.remove(&request.robot);
                 }
                 Message::Clear(robot, _, clear) => _ = state.zones[clear.zone as usize - 1].unheard.remove(&robot),
-                Message::Territory(..) | Message::Grant(_) => {}
+                Message::Territory(..) | Message::Grant(_) | Message::Gone(..) => {}
             }
         }
         state
@@ -153,7 +159,7 @@ impl Scenario {
         open.push((0, start));
         while let Some((number, state)) = open.pop() {
             state.check(self.name);
-            if state.robots.iter().all(|robot| robot.at == robot.goal && robot.moving.is_none()) {
+            if state.robots.iter().all(|robot| robot.is_gone || robot.at == robot.goal && robot.moving.is_none()) {
                 done.push(number);
             }
             for mut next in state.successors(&mut ground, self) {
@@ -187,7 +193,8 @@ impl Scenario {
 impl State {
     /// No two robots hold the same block, and each holds only what its zone knows.
     fn check(&self, name: &str) {
-        let held = self.robots.iter().flat_map(|robot| [Some(robot.at), robot.moving].into_iter().flatten());
+        let on_floor = self.robots.iter().filter(|robot| !robot.is_gone);
+        let held = on_floor.flat_map(|robot| [Some(robot.at), robot.moving].into_iter().flatten());
         let mut blocks: Vec<Block> = held.collect();
         let all = blocks.len();
         blocks.sort_unstable();
@@ -233,7 +240,7 @@ impl State {
     fn request(&mut self, robot: usize, again: bool) {
         let one = &mut self.robots[robot];
         let rank = u64::try_from(robot).unwrap();
-        let goal = Some(one.goal).filter(|goal| *goal != one.passage.end());
+        let goal = Some(one.goal).filter(|goal| *goal != one.passage.end() && !one.is_gone);
         let wish = Wish {
             goal,
             charger: one.goal,
@@ -270,6 +277,15 @@ impl State {
 
     fn deliver(&mut self, message: &Message, ground: &mut Ground, rules: &Scenario) {
         match message {
+            Message::Territory(robot, _) | Message::Grant(Grant { robot, .. })
+                if self.robots[*robot as usize - 1].is_gone => {}
+            Message::Gone(zone, robot) => {
+                self.network.retain(|other| other != message);
+                let incarnation = self.robots[*robot as usize - 1].passage.incarnation();
+                self.zones[*zone].ledger.end(*robot, incarnation);
+                self.zones[*zone].unheard.remove(robot);
+                self.plan(*zone, false, ground, rules);
+            }
             Message::Territory(robot, territory) => {
                 let robot = *robot as usize - 1;
                 self.robots[robot].passage.hear_territory(territory);
@@ -308,7 +324,7 @@ impl State {
             next.deliver(message, ground, rules);
             all.push(next);
         }
-        for robot in 0..self.robots.len() {
+        for robot in (0..self.robots.len()).filter(|robot| !self.robots[*robot].is_gone) {
             let mut next = self.clone();
             let one = &mut next.robots[robot];
             if let Some(to) = one.moving.take() {
@@ -317,6 +333,24 @@ impl State {
                 one.moving = one.passage.next();
                 next.request(robot, false);
                 all.push(next);
+            }
+            if self.faults.gone > 0 {
+                let mut taken = self.clone();
+                taken.faults.gone -= 1;
+                let one = &mut taken.robots[robot];
+                (one.is_gone, one.moving) = (true, None);
+                let number = one.passage.robot();
+                (0..self.zones.len()).for_each(|zone| taken.send(Message::Gone(zone, number)));
+                // Its program may have ended before.
+                let mut ended = taken.clone();
+                taken.robots[robot].passage.leave_floor();
+                taken.request(robot, false);
+                for next in [&mut taken, &mut ended] {
+                    let one = &mut next.robots[robot];
+                    // What it knew makes no difference any more.
+                    (one.at, one.passage) = (one.goal, Passage::new(number, one.passage.incarnation(), one.goal));
+                }
+                all.extend([taken, ended]);
             }
             if self.faults.robots > 0 {
                 let mut crashed = self.clone();
@@ -357,6 +391,20 @@ impl State {
     fn drop_answered(&mut self) {
         let State { zones, robots, network, faults, .. } = self;
         network.retain(|message| {
+            let reader = match message {
+                Message::Territory(robot, _) => *robot,
+                Message::Grant(grant) => grant.robot,
+                Message::Request(request) => {
+                    // What changes nothing now does not later on, since the robot says nothing new.
+                    let ledger = &zones[request.zone as usize - 1].ledger;
+                    return !ledger.has_ended(request.robot, request.incarnation)
+                        || ledger.clone().hear(request) != Heard::Nothing;
+                }
+                Message::Clear(..) | Message::Gone(..) => 0,
+            };
+            if reader != 0 && robots[reader as usize - 1].is_gone {
+                return false;
+            }
             let (robot, zone, is_known) = match message {
                 Message::Territory(robot, territory) => {
                     let known = robots[*robot as usize - 1].passage.territories();
@@ -368,7 +416,7 @@ impl State {
                     let is_known = member.is_none_or(|member| member.request.incarnation >= *incarnation);
                     (robot, clear.zone, is_known || clear.term < zones[clear.zone as usize - 1].ledger.territory().term)
                 }
-                Message::Request(_) | Message::Grant(_) => return true,
+                Message::Request(_) | Message::Grant(_) | Message::Gone(..) => return true,
             };
             !is_known || faults.zones > 0 || zones[zone as usize - 1].unheard.contains(robot)
         });
@@ -430,7 +478,7 @@ impl State {
         }
         for message in &mut self.network {
             match message {
-                Message::Territory(..) | Message::Clear(..) => {}
+                Message::Territory(..) | Message::Clear(..) | Message::Gone(..) => {}
                 Message::Request(request) => of_request(request, &mut see),
                 Message::Grant(grant) => {
                     see(Numbered::Request, grant.link, &mut grant.heard);

@@ -29,7 +29,7 @@ const BAY: Scenario = Scenario {
 const BORDER: Scenario =
     Scenario { name: "border", map: "...", zones: &[(0, 2), (2, 1)], robots: &[((0, 0), (2, 0))], ..SQUARE };
 
-const NONE: Faults = Faults { robots: 0, zones: 0 };
+const NONE: Faults = Faults { robots: 0, zones: 0, gone: 0 };
 
 fn explore(scenarios: &[Scenario]) {
     for scenario in scenarios {
@@ -63,6 +63,10 @@ const TRAIN: Scenario = Scenario {
     ..SQUARE
 };
 
+/// Two robots that drive in the same direction: each has to enter two blocks where the other one may have been.
+const QUEUE: Scenario =
+    Scenario { name: "queue", map: "....", zones: &[(0, 4)], robots: &[((0, 0), (2, 0)), ((1, 0), (3, 0))], ..SQUARE };
+
 #[test]
 fn messages_that_are_lost_late_or_come_again_lead_to_no_collision_and_no_standstill() {
     explore(&[SQUARE, BORDER, BAY, ROUND, ROW, TRAIN]);
@@ -90,4 +94,11 @@ fn zones_that_lose_their_record_lead_to_no_collision_and_no_standstill() {
     let faults = Faults { zones: 1, ..NONE };
     let train = Scenario { faults, arriving: 1, ..TRAIN };
     explore(&[Scenario { faults, ..BORDER }, Scenario { faults, ..ROUND }, Scenario { faults, ..SQUARE }, train]);
+}
+
+#[test]
+fn robots_that_are_taken_off_the_floor_lead_to_no_collision_and_no_standstill() {
+    let faults = Faults { gone: 1, ..NONE };
+    explore(&[QUEUE, BORDER].map(|scenario| Scenario { faults, ..scenario }));
+    explore(&[SQUARE, ROUND, TRAIN].map(|scenario| Scenario { faults, arriving: 1, ..scenario }));
 }

@@ -6,7 +6,7 @@ use saoms_testkit::{Fleet, Run};
 
 const PERIOD: u32 = 100;
 
-fn component(name: &str, class: &str, properties: &[(&str, String)]) -> String {
+pub(super) fn component(name: &str, class: &str, properties: &[(&str, String)]) -> String {
     let given = [("ID", name.to_owned()), ("period", PERIOD.to_string())];
     let properties: String = given
         .iter()
@@ -18,7 +18,7 @@ fn component(name: &str, class: &str, properties: &[(&str, String)]) -> String {
 }
 
 /// Zones beside each other, each with as many columns.
-fn zones(count: u32, columns: u32) -> String {
+pub(super) fn zones(count: u32, columns: u32) -> String {
     let zone = |number: u32| {
         let properties = [("number", number), ("x", (number - 1) * columns), ("width", columns)];
         component(&format!("Zone{number}"), "Zone", &properties.map(|(name, value)| (name, value.to_string())))
@@ -26,12 +26,12 @@ fn zones(count: u32, columns: u32) -> String {
     (1..=count).map(zone).collect()
 }
 
-fn robot(number: u32, x: u32, y: u32) -> String {
+pub(super) fn robot(number: u32, x: u32, y: u32) -> String {
     let properties = [("chargeX", x), ("chargeY", y), ("discharge", 0)];
     component(&format!("Robot{number}"), "Robot", &properties.map(|(name, value)| (name, value.to_string())))
 }
 
-fn site(world: &[(&str, String)], zones: &str, robots: &str, scenario: &str) -> Fleet {
+pub(super) fn site(world: &[(&str, String)], zones: &str, robots: &str, scenario: &str) -> Fleet {
     Fleet::of_text(format!(
         r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="site" targetNamespace="urn:site">
         {}{zones}{}{}{robots}</composite>"#,
@@ -41,7 +41,7 @@ fn site(world: &[(&str, String)], zones: &str, robots: &str, scenario: &str) -> 
     ))
 }
 
-fn delivered(run: &Run) -> u64 {
+pub(super) fn delivered(run: &Run) -> u64 {
     run.sections["luggage"]["delivered"].as_u64().unwrap_or(0)
 }
 

@@ -5,7 +5,8 @@ use std::time::Duration;
 use saoms_api::Time;
 use saoms_components::grid::Block;
 use saoms_components::messages::{
-    ClearTerm, FAULT, Fault, GRANT, GRANT_REQUEST, GrantRequest, PRESENCE, Presence, Standing, Step, TERRITORY, link,
+    ClearTerm, FAULT, Fault, GRANT, GRANT_REQUEST, Grant, GrantRequest, LAST_NUMBER, PRESENCE, Presence, Standing,
+    Step, TERRITORY, link,
 };
 use saoms_components::zone::Zone;
 use saoms_testkit::Bench;
@@ -65,6 +66,11 @@ impl Right {
 
     fn hear_presence(&mut self, presence: Presence) {
         self.zone.deliver(&PRESENCE, presence);
+        self.zone.execute().unwrap();
+    }
+
+    fn hear_gone(&mut self, fault: Fault) {
+        self.zone.deliver(&FAULT, fault);
         self.zone.execute().unwrap();
     }
 
@@ -135,4 +141,42 @@ fn blocks_ahead_of_a_robot_that_failed_in_another_zone_are_free() {
     right.zone.deliver(&FAULT, failed);
     right.zone.execute().unwrap();
     assert_eq!(right.granted_to(at(3)).first(), Some(&at(6)), "{}", right.zone.transcript());
+}
+
+/// What it said before that arrives late, in any order, and another word of the event changes nothing.
+#[test]
+fn blocks_of_a_robot_that_is_gone_stay_free() {
+    let mut right = Right::new();
+    right.hear(right.request(1, 1, at(6), &[at(6)]));
+    right.hear_gone(Fault::gone(1));
+    right.hear(right.request(1, 3, at(5), &[at(5), at(6)]));
+    right.zone.execute().unwrap();
+    let told = right.zone.sent(&GRANT);
+    let is_told = |grant: &Grant| grant.heard == LAST_NUMBER && grant.steps.is_empty();
+    assert!(told.iter().any(is_told), "a robot that is there by mistake has to hear it: {told:?}");
+    right.hear(GrantRequest { standing: Standing::Lost, ..right.request(1, 2, at(5), &[at(5)]) });
+    right.hear_presence(right.presence(1, 7, at(5), true));
+    assert_eq!(right.granted_to(at(4)), [at(6), at(5), at(4)], "{}", right.zone.transcript());
+}
+
+#[test]
+fn a_robot_that_is_gone_and_begins_anew_is_not_gone_when_the_event_is_said_again() {
+    let mut right = Right::new();
+    right.hear(right.request(1, 1, at(6), &[at(6)]));
+    right.hear_gone(Fault::gone(1));
+    let since = Some(Time::START + Duration::from_millis(500));
+    right.zone.execute_until(Duration::from_secs(1)).unwrap();
+    right.hear(GrantRequest { incarnation: 8, ..right.request(1, 1, at(6), &[at(6)]) });
+    right.hear_gone(Fault { since, ..Fault::gone(1) });
+    assert_eq!(right.granted(), [], "{}", right.zone.transcript());
+}
+
+/// A zone that heard of a robot that it is there, and no request of it yet.
+#[test]
+fn a_robot_that_is_gone_gets_nothing_for_its_first_request() {
+    let mut right = Right::new();
+    right.hear_presence(right.presence(1, 7, at(0), false));
+    right.hear_gone(Fault::gone(1));
+    right.hear(GrantRequest { goal: at(6), rank: 10, ..right.request(1, 1, at(3), &[]) });
+    assert_eq!(right.granted_to(at(4)), [at(6), at(5), at(4)], "{}", right.zone.transcript());
 }
