@@ -87,3 +87,16 @@ fn robots_leave_a_charger_that_stops_giving_anything_while_they_share_it() {
         }
     }
 }
+
+#[test]
+fn a_robot_whose_battery_does_not_last_to_its_charger_charges_at_a_closer_one() {
+    // The second one broke, and left its charger, close to which the battery of the first one loses what it needs.
+    let scenario = "at 0s breakdown 2; at 1s visit (10,9) by Robot1; at 3s drain robot=1 percent=40";
+    let robots = [((0, 0), (0, 0)), ((10, 10), (1, 9))];
+    for has_zone in [true, false] {
+        let run = fleet(scenario, &robots, has_zone).run(1, HOUR);
+        let log = run.log();
+        assert!(log.contains("charges at (10,10) this time: its own is out of reach"), "zone {has_zone}: {log}");
+        assert_eq!(run.sections["stranded"], 0, "zone {has_zone}: {log}");
+    }
+}
