@@ -256,6 +256,7 @@ impl Environment {
                 let request = EventLuggage::request(self.luggage, from, to);
                 let job = OpenJob::new(vec![from, to], (false, 0), context.execution());
                 self.open.insert(self.luggage, job);
+                context.count("scenario.luggage", 1);
                 if !self.has_world {
                     context.count("luggage.open", 1);
                 }

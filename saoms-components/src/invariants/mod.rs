@@ -22,6 +22,7 @@ use crate::messages::{
     AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, DRAIN, EVENT_LUGGAGE, FAULT, OUTAGE, POSITION, REMOVAL,
     ROBOT_LIST, SLOW, carries,
 };
+use crate::report::asked_for;
 use luggage::Pieces;
 use robots::Robots;
 use tide::Tide;
@@ -189,6 +190,8 @@ impl RunInvariants for FleetInvariants {
                 format!("robots said of {delivered} pieces that they were delivered, the world counted {counted}");
             Finder { site: "", at, found: &mut self.found }.note(ONCE, text);
         }
+        // What no master heard of is not delivered either.
+        let requested = requested.max(usize::try_from(asked_for(counts)).unwrap_or_default());
         let seconds = at.since(Time::START).as_secs_f64();
         let figure = |name, value| Measure { name, value, of: None };
         self.measures = vec![

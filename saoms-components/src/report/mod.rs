@@ -36,9 +36,15 @@ fn result(count: &Counts<'_>) -> Option<String> {
     Some(format!("{delivered}{given_up}, {collisions}, {} stranded", count("stranded")))
 }
 
+/// The pieces that are to be delivered: those that masters asked robots for, or more where masters did not hear of all
+/// that scenarios put down.
+pub(crate) fn asked_for(count: &Counts<'_>) -> i64 {
+    count("luggage.requested").max(count("scenario.luggage") - count("luggage.ignored"))
+}
+
 /// `1 of 1 pieces of luggage delivered`, `3 of 5 errands finished`; `None` if nothing was requested.
 fn progress(count: &Counts<'_>) -> Option<String> {
-    let (luggage, errands) = (count("luggage.requested"), count("errands.requested"));
+    let (luggage, errands) = (asked_for(count), count("errands.requested"));
     let delivered = format!("{} of {luggage} pieces of luggage delivered", count("luggage.delivered"));
     let finished = format!("{} of {errands} errands finished", count("errands.finished"));
     match (luggage > 0, errands > 0) {
@@ -85,5 +91,11 @@ mod tests {
         assert_eq!(text(4, 1).unwrap(), "3 of 4 pieces of luggage delivered, 1 collision, 2 stranded");
         assert_eq!(text(4, 5).unwrap(), "3 of 4 pieces of luggage delivered, 5 collisions, 2 stranded");
         assert_eq!(progress(&counts(4, 0)).unwrap(), "3 of 4 pieces of luggage delivered");
+        let unheard = |path: &str| match path {
+            "scenario.luggage" => 31,
+            "luggage.ignored" => 1,
+            _ => counts(2, 0)(path),
+        };
+        assert_eq!(progress(&unheard).unwrap(), "3 of 30 pieces of luggage delivered");
     }
 }

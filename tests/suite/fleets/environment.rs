@@ -174,3 +174,27 @@ fn luggage_that_a_crashed_master_lost_is_asked_for_again() {
         assert_eq!(report.outcome.status, RunStatus::Done, "{context}");
     }
 }
+
+/// Nobody hears of luggage whose announcement is late for ever.
+#[test]
+fn luggage_that_no_master_hears_of_counts_as_not_delivered() {
+    let scenario = "from 1s every 1s 6 times luggage (3,0) to (4,3)\nat 3.5s delay 1h on ETOPIC";
+    let mut text = String::new();
+    for (id, more) in [
+        ("World", ""),
+        ("MasterEnvironment", ""),
+        ("Environment", &*format!(r#"<property name="scenario">{scenario}</property>"#)),
+        ("Robot", r#"<reference name="world" target="World"/>"#),
+    ] {
+        text += &format!(
+            r#"<component name="{id}"><implementation.rust class="saoms.{id}"/>
+            <property name="ID">{id}1</property><property name="period">100</property>{more}</component>"#
+        );
+    }
+    let fleet = Fleet::of_text(format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
+{text}</composite>"#
+    ));
+    let run = fleet.run(1, Duration::from_secs(60));
+    assert_eq!((run.count("luggage.requested"), run.count("scenario.luggage")), (3, 6), "{}", run.log());
+}

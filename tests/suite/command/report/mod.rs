@@ -45,8 +45,10 @@ fn the_report_of_a_journal_is_that_of_the_run_as_far_as_it_can_be_known() {
     assert_eq!(rebuilt["outcome"]["status"], Value::Null);
     let known = ["seed", "time_s", "components", "journal", "adaptation", "outcome", "unknown"];
     let unknown = rebuilt["unknown"].to_string();
-    let shipped =
-        ["luggage", "messages", "faults", "events", "collisions", "stranded", "assistance", "robots", "worlds"];
+    let shipped = [
+        "luggage", "messages", "faults", "events", "collisions", "stranded", "assistance", "robots", "worlds",
+        "scenario",
+    ];
     for field in of_run.as_object().unwrap().keys().filter(|field| !shipped.contains(&field.as_str())) {
         assert!(known.contains(&field.as_str()) || unknown.contains(field.as_str()), "{field} is neither");
     }
