@@ -22,12 +22,16 @@ fn component(id: &str, class: &str, more: &str) -> String {
 
 /// A site with this map, and a robot for each digit on it, whose charger is there.
 fn site(map: &str, has_zone: bool, robot: &str, scenario: &str) -> Fleet {
+    let zone = component("Zone", "Zone", r#"<reference name="world" target="World"/>"#);
+    site_with(map, if has_zone { &zone } else { "" }, robot, scenario)
+}
+
+/// The same with these zones.
+fn site_with(map: &str, zones: &str, robot: &str, scenario: &str) -> Fleet {
     let world = r#"<reference name="world" target="World"/>"#;
     let free: String = map.chars().map(|sign| if sign.is_ascii_digit() { '.' } else { sign }).collect();
     let mut components = component("World", "World", &property("map", &free));
-    if has_zone {
-        components += &component("Zone", "Zone", world);
-    }
+    components += zones;
     components += &component("Master", "MasterEnvironment", "");
     components += &component("Environment", "Environment", &property("scenario", scenario));
     for (row, line) in map.lines().enumerate() {
@@ -69,6 +73,25 @@ fn a_robot_that_has_to_charge_lets_another_one_out_of_the_dead_end_with_its_char
     // Who goes in is the more urgent one, and holds the mouth.
     let scenario = "at 1s luggage (7,4) to (7,2) ; from 1s every 1s..3s 12 times luggage (1,0)..(1,1) to (4,2)..(7,4)";
     expect_all_brought(&site(MOUTH, false, "", scenario), 0..8);
+}
+
+#[test]
+fn robots_get_past_each_other_where_a_zone_ends_in_the_middle_of_a_dead_end() {
+    let zone = |number: u32, rows: &str| {
+        let world = r#"<reference name="world" target="World"/>"#;
+        component(&format!("Zone{number}"), "Zone", &[&property("number", &number.to_string()), rows, world].concat())
+    };
+    let zones = zone(1, &property("height", "5")) + &zone(2, &property("y", "5"));
+    let map = "1....2\n......\n@@.@@@\n@@.@@@\n@@.@@@\n@@.@@@\n@@.@@@\n@@.@@@";
+    // Who goes in is often the more urgent one, and makes way over the edge for the one that comes out.
+    let scenario = "from 1s every 2s..4s 60 times luggage (0,0)..(5,1) to (2,4)..(2,7); \
+        from 1s every 2s..4s 60 times luggage (2,4)..(2,7) to (0,0)..(5,1)";
+    let fleet = site_with(map, &zones, &property("discharge", "0"), scenario);
+    for seed in 0..4 {
+        assert_eq!(fleet.violations(seed, HOUR), "", "seed {seed}");
+        let run = fleet.run(seed, HOUR);
+        assert_eq!(run.outcome.status, RunStatus::Done, "seed {seed}: {:?}\n{}", run.outcome.reasons, run.log());
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use saoms_api::{Context, Failure};
 
+use super::dead_end::way_out;
 use super::leg::Urgency;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
@@ -139,26 +140,33 @@ impl RobotKnowledge {
         asked.or_else(|| self.leg.goal.filter(|_| self.leg.urgency != Urgency::None)).filter(|_| !stays)
     }
 
-    /// A block of another zone to which the robot makes way for one of higher priority, and the rank of that one: its
-    /// own zone has no free block for it.
+    /// A block of another zone to which the robot makes way for one of higher priority, or one that comes out of a dead
+    /// end, and the rank of the more urgent one: its own zone has no free block for it.
     fn aside_over_edge(&mut self) -> Option<(Block, u64)> {
         if self.standing() != Standing::MakesWay {
             return None;
         }
         let RobotKnowledge { zones: Some(zones), lists, routes, leg, number, next, .. } = self else { return None };
-        let asker = lists.peers.get(zones.asker()?)?;
-        let Priority { rank, .. } = asker.priority;
-        let has_right = asker.priority > leg.priority(*number) && asker.priority != IMMOVABLE;
-        if !has_right || asker.next.distance(*next) != 1 {
-            return None;
-        }
+        let own = leg.priority(*number);
+        // One that waits for this robot does so for those behind it, too.
+        let priority = |robot: u32| {
+            let line = zones.line_behind(robot).into_iter().filter_map(|robot| lists.peers.get(robot));
+            line.map(|peer| peer.priority).filter(|priority| *priority != IMMOVABLE).max()
+        };
+        let askers = zones.askers().filter_map(|robot| Some((lists.peers.get(robot)?, priority(robot)?)));
+        let has_right = |asker: &Position, priority: Priority| {
+            let comes_out = || way_out(asker.next, routes) == Some(*next);
+            asker.priority != IMMOVABLE && asker.next.distance(*next) == 1 && (priority > own || comes_out())
+        };
+        let (asker, priority) =
+            askers.filter(|(asker, priority)| has_right(asker, *priority)).max_by_key(|(_, priority)| *priority)?;
         let beside = next.neighbours().into_iter().filter(|block| routes.is_free(*block) && *block != asker.next);
-        let (over, own): (Vec<Block>, Vec<Block>) = beside.partition(|block| zones.is_over_edge(*block));
-        if own.iter().any(|block| lists.peers.on(*block).is_none()) {
+        let (over, inside): (Vec<Block>, Vec<Block>) = beside.partition(|block| zones.is_over_edge(*block));
+        if inside.iter().any(|block| lists.peers.on(*block).is_none()) {
             return None;
         }
         let best = over.into_iter().min_by_key(|block| (lists.peers.on(*block).is_some(), routes.is_charger(*block)));
-        best.map(|block| (block, rank))
+        best.map(|block| (block, priority.max(own).rank))
     }
 
     fn standing(&mut self) -> Standing {

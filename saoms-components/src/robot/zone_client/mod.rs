@@ -2,6 +2,8 @@
 
 mod latency;
 
+use std::collections::BTreeMap;
+
 use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
 use crate::grid::{Block, Map};
@@ -58,8 +60,8 @@ pub(crate) struct ZoneClient {
     pub(super) asked: Option<Block>,
     /// The block that another robot has to leave first, and that robot.
     in_the_way: Option<InTheWay>,
-    /// The robot that waits until this one leaves the end of its passage.
-    asker: Option<u32>,
+    /// For each robot nearby that waits for another one, by the zone that says so: the block and that robot.
+    waiting: BTreeMap<(u32, u32), InTheWay>,
     latency: Latency,
     hears_around: Option<Block>,
 }
@@ -135,7 +137,7 @@ impl ZoneClient {
             rested: false,
             asked: None,
             in_the_way: None,
-            asker: None,
+            waiting: BTreeMap::new(),
             latency: Latency::default(),
             hears_around: None,
         }))
@@ -202,7 +204,7 @@ impl ZoneClient {
             grants,
             validator,
             in_the_way,
-            asker,
+            waiting,
             latency,
             aimed,
             rested,
@@ -223,9 +225,13 @@ impl ZoneClient {
         }
         for (header, grant) in context.receive(grants).with_headers() {
             if grant.robot != passage.robot() {
-                let asks = (grant.waits_for, grant.wanted) == (passage.robot(), passage.end());
-                if (asks || *asker == Some(grant.robot)) && validator.accepts(grant, header, area, context) {
-                    *asker = asks.then_some(grant.robot);
+                let (key, waits) = ((grant.robot, grant.zone), grant.waits_for != 0);
+                if (waits || waiting.contains_key(&key)) && validator.accepts(grant, header, area, context) {
+                    if waits {
+                        waiting.insert(key, InTheWay { block: grant.wanted, robot: grant.waits_for });
+                    } else {
+                        waiting.remove(&key);
+                    }
                 }
             } else if validator.accepts(grant, header, area, context) && passage.hear(grant) {
                 let waits = grant.waits_for != 0;
@@ -246,6 +252,8 @@ impl ZoneClient {
             return Ok(());
         }
         self.hears_around = Some(block);
+        // It does not hear any more when robots elsewhere get on.
+        self.waiting.retain(|_, wait| wait.block.distance(block) <= HEARING);
         context.set_region(&self.grants, Some(Region::around((block.x, block.y), HEARING + SLACK)))
     }
 
@@ -260,9 +268,26 @@ impl ZoneClient {
         self.in_the_way.filter(|wait| passage.next().is_none() && wait.block.distance(passage.end()) == 1)
     }
 
-    /// The robot that waits until this one leaves its block, if this one can drive no further.
-    pub(crate) fn asker(&self) -> Option<u32> {
-        self.asker.filter(|_| !self.may_drive())
+    /// The robots that wait until this one leaves its block, if this one can drive no further.
+    pub(crate) fn askers(&self) -> impl Iterator<Item = u32> {
+        let passage = self.passage.as_ref().filter(|_| !self.may_drive());
+        let asks = move |wait: &InTheWay| {
+            passage.is_some_and(|passage| (wait.robot, wait.block) == (passage.robot(), passage.end()))
+        };
+        self.waiting.iter().filter(move |(_, wait)| asks(wait)).map(|((robot, _), _)| *robot)
+    }
+
+    /// A robot, and all that wait for it, or for one that does.
+    pub(crate) fn line_behind(&self, robot: u32) -> Vec<u32> {
+        let mut line = vec![robot];
+        let mut next = 0;
+        while let Some(first) = line.get(next).copied() {
+            next += 1;
+            let behind = self.waiting.iter().filter(|(_, wait)| wait.robot == first).map(|((robot, _), _)| *robot);
+            let behind: Vec<u32> = behind.filter(|robot| !line.contains(robot)).collect();
+            line.extend(behind);
+        }
+        line
     }
 
     /// True if the block is in another zone than the end of the passage.
