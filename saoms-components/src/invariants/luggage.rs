@@ -8,10 +8,10 @@ use saoms_api::host::SharedMessage;
 use super::tide::Tide;
 use super::{FINISHED, Finder, ONCE, TAKEN_OVER, bound};
 use crate::messages::{
-    Assignment, CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal,
+    Assignment, CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, is_visit,
 };
 
-/// The pieces of luggage of a site.
+/// The pieces of luggage of a site, and the visits, which robots do once, too.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
     all: BTreeMap<u32, Piece>,
@@ -27,17 +27,22 @@ struct Piece {
 }
 
 impl Pieces {
+    /// The pieces of luggage, without visits.
+    fn luggage(&self) -> impl Iterator<Item = &Piece> {
+        self.all.iter().filter(|(luggage, _)| !is_visit(**luggage)).map(|(_, piece)| piece)
+    }
+
     pub(super) fn requested(&self) -> usize {
-        self.all.len()
+        self.luggage().count()
     }
 
     pub(super) fn delivered(&self) -> usize {
-        self.all.values().filter(|piece| piece.delivered.is_some()).count()
+        self.luggage().filter(|piece| piece.delivered.is_some()).count()
     }
 
     /// How long each delivered piece waited, in seconds.
     pub(super) fn waits(&self) -> impl Iterator<Item = f64> {
-        self.all.values().filter_map(|piece| Some(piece.delivered?.since(piece.requested).as_secs_f64()))
+        self.luggage().filter_map(|piece| Some(piece.delivered?.since(piece.requested).as_secs_f64()))
     }
 
     pub(super) fn hear(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {

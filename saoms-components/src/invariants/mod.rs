@@ -194,10 +194,16 @@ impl RunInvariants for FleetInvariants {
         let requested = requested.max(usize::try_from(asked_for(counts)).unwrap_or_default());
         let seconds = at.since(Time::START).as_secs_f64();
         let figure = |name, value| Measure { name, value, of: None };
-        self.measures = vec![
-            Measure { name: "pieces delivered", value: delivered as f64, of: Some(requested as f64) },
-            figure("pieces in an hour", if seconds > 0.0 { delivered as f64 * 3600.0 / seconds } else { 0.0 }),
-        ];
+        let (errands, done) = (counts("errands.requested"), counts("errands.finished"));
+        self.measures = Vec::new();
+        if requested > 0 || errands == 0 {
+            let pieces = Measure { name: "pieces delivered", value: delivered as f64, of: Some(requested as f64) };
+            let hourly = if seconds > 0.0 { delivered as f64 * 3600.0 / seconds } else { 0.0 };
+            self.measures.extend([pieces, figure("pieces in an hour", hourly)]);
+        }
+        if errands > 0 {
+            self.measures.push(Measure { name: "errands finished", value: done as f64, of: Some(errands as f64) });
+        }
         // Where nothing was brought, nobody knows how long it waits.
         if let Some(longest) = waits.iter().copied().reduce(f64::max) {
             let mean = waits.iter().sum::<f64>() / waits.len() as f64;

@@ -136,3 +136,13 @@ fn impossible_visits_are_told_at_their_place() {
     let found = fleet(&[("scenario", "at 1s visit (3,1)")], classic).diagnostics();
     assert!(found.contains("robots with the policy `classic` visit no blocks"), "{found}");
 }
+
+/// What robots say of visits is not counted by the world, which counts luggage alone.
+#[test]
+fn visits_keep_the_invariants_of_luggage() {
+    for scenario in
+        ["at 1s visit (9,9) by Robot2; at 1s visit (1,1)", "at 1s visit (9,9); at 2s luggage (3,3) to (5,5)"]
+    {
+        assert_eq!(fleet(&[("scenario", scenario)], [&[], &[]]).violations(1, LIMIT), "", "{scenario}");
+    }
+}
