@@ -26,7 +26,8 @@
         {"name": "active", "type": "bool"}, {"name": "battery", "type": "float64"},                         \
         {"name": "in_charge", "type": "bool"}, {"name": "asleep", "type": "bool"}, {"name": "charger", "type":) \
     BLOCK JSON(}, {"name": "period", "type": "uint64"}, {"name": "block", "type":) BLOCK      \
-    JSON(}, {"name": "policy", "type": {"enumeration": "uint8", "values": {"SAFE": 0, "CLASSIC": 1}}}]})
+    JSON(}, {"name": "policy", "type": {"enumeration": "uint8", "values": {"SAFE": 0, "CLASSIC": 1}}},  \
+        {"name": "began", "type": {"optional": "uint64"}}]})
 
 #define EVENT_LUGGAGE                                                                                       \
     JSON({"name": "EventLuggage", "place": "from", "fields": [{"name": "robot", "type": "uint32"},                           \

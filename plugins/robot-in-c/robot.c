@@ -140,6 +140,8 @@ static SaomsStatus say_robot(Patrol *patrol, const SaomsHostHandle *host, int ac
     saoms_write_u64(&message, host->functions->period(host->state) / 1000);
     write_block(&message, patrol->own.block);
     saoms_write_u8(&message, 0);
+    /* It does not say when it began. */
+    saoms_write_u32(&message, 0);
     return send(host, patrol->robots, patrol->number, &message, error);
 }
 

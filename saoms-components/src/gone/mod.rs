@@ -8,7 +8,8 @@ use crate::grid::Block;
 use crate::messages::{Fault, RobotList};
 
 /// The robots that are out, as a component heard of them. One of them is back when it says that it is active after
-/// that; what it said before, and its last words, do not count any more.
+/// that, and one that was taken off the floor if it also began after that; what it said before, and its last words, do
+/// not count any more.
 #[derive(Clone, Debug, Default, Field)]
 pub(crate) struct Gone {
     robots: Vec<GoneRobot>,
@@ -57,7 +58,9 @@ impl Gone {
     #[cold]
     fn comes_back(&mut self, robot: &RobotList, header: Header) -> bool {
         let Some(place) = self.robots.iter().position(|known| known.robot == robot.robot) else { return true };
-        let is_back = robot.active && header.sent > self.robots[place].since;
+        let GoneRobot { since, failed, .. } = self.robots[place];
+        // One that hears late that somebody took it off the floor speaks after that, too.
+        let is_back = robot.active && robot.began.filter(|_| !failed).unwrap_or(header.sent) > since;
         if is_back {
             self.robots.remove(place);
         }
@@ -101,6 +104,17 @@ mod tests {
         assert!(!gone.hears(&says(true), at(5)), "it said so before");
         assert!(!gone.hears(&says(false), at(6)), "its last words");
         assert!(gone.contains(2) && gone.hears(&says(true), at(7)) && !gone.contains(2));
+    }
+
+    #[test]
+    fn a_robot_that_hears_late_that_it_is_gone_is_not_back() {
+        let at = |seconds| Time::START + Duration::from_secs(seconds);
+        let header = |seconds| Header { sender: 0, sent: at(seconds), cause: Cause::default() };
+        let says = |began| RobotList { robot: 2, active: true, began: Some(at(began)), ..RobotList::default() };
+        let mut gone = Gone::default();
+        gone.note(&Fault::gone(2), header(5));
+        assert!(!gone.hears(&says(1), header(6)) && gone.contains(2));
+        assert!(gone.hears(&says(7), header(8)) && !gone.contains(2));
     }
 
     #[test]

@@ -35,9 +35,20 @@ struct Robot {
     is_active: bool,
     /// True if it is out of service, so that nothing is expected of it.
     is_out: bool,
+    /// When somebody took it off the floor, until it begins anew: it may hear of that late.
+    gone: Option<Time>,
+    /// When it began, as it said last.
+    began: Option<Time>,
     is_empty: bool,
     supply: Supply,
     stands_still: bool,
+}
+
+impl Robot {
+    /// True if it began after it was gone.
+    fn is_since(&self, gone: Time) -> bool {
+        self.began.is_none_or(|began| began > gone)
+    }
 }
 
 /// What the world says of collisions.
@@ -61,6 +72,9 @@ impl Robots {
     pub(super) fn hear_position(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {
         let Some(Position { robot: number, block, next, .. }) = message.get::<Position>().cloned() else { return };
         let robot = self.all.entry(number).or_default();
+        if robot.gone.is_some() {
+            return;
+        }
         let before = robot.block.replace(block);
         if before != Some(block) {
             (robot.moved, robot.stands_still) = (finder.at, false);
@@ -79,7 +93,9 @@ impl Robots {
         let Some(state) = message.get::<RobotList>() else { return };
         let robot = self.all.entry(state.robot).or_default();
         robot.period = state.period;
-        if state.active {
+        robot.began = state.began;
+        robot.gone = robot.gone.filter(|gone| !robot.is_since(*gone));
+        if state.active && robot.gone.is_none() {
             robot.is_out = false;
         }
         if robot.supply.hear(state, (finder.at, robot.moved), tide, &self.outages) {
@@ -122,6 +138,11 @@ impl Robots {
 
     pub(super) fn hear_fault(&mut self, message: &SharedMessage) {
         if let Some(fault) = message.get::<Fault>() {
+            let since = fault.since.unwrap_or(message.header().sent);
+            let robot = self.all.get_mut(&fault.robot).filter(|_| fault.kind == FaultKind::Gone);
+            if let Some(robot) = robot.filter(|robot| !robot.is_since(since)) {
+                robot.gone = Some(since);
+            }
             let starts_elsewhere = fault.kind == FaultKind::Gone || fault.is_failure() && fault.block.is_none();
             self.put_out(fault.robot, starts_elsewhere);
         }

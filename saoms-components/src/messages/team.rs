@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use saoms_api::{Field, Message, Topic};
+use saoms_api::{Field, Message, Time, Topic};
 
 use crate::grid::{Block, Map};
 use crate::robot::{Job, Policy};
@@ -72,6 +72,9 @@ pub struct RobotList {
     pub block: Block,
     /// Rules by which the robot acts.
     pub policy: Policy,
+    /// When the robot began to work, since it was started last, if it says so. One that somebody took off the floor
+    /// is back if that was later.
+    pub began: Option<Time>,
 }
 
 impl RobotList {

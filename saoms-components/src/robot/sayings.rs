@@ -75,6 +75,7 @@ impl RobotKnowledge {
             period: self.period,
             block: self.block,
             policy: self.policy,
+            began: self.began,
         }
     }
 }

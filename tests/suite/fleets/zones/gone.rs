@@ -41,3 +41,28 @@ fn blocks_of_a_robot_that_is_gone_are_free_however_late_its_words_are() {
         }
     }
 }
+
+/// It goes on for a while, and what it says then is not taken for its return: the others would keep its block at last.
+#[test]
+fn a_robot_that_hears_late_that_it_is_gone_is_in_nobodys_way() {
+    let map = "
+        @..@@@@@@@
+        ..........
+    ";
+    let world = [("map", map.to_owned()), ("moveTime", "300ms".to_owned())];
+    let robots = robot(1, 2, 0) + &robot(2, 1, 0);
+    for tenths in (21..70).step_by(4) {
+        let scenario = format!(
+            "at 1s for 30s delay 2s to Robot1
+            at 1s luggage (4,1) to (8,1)
+            at {}.{}s gone Robot1
+            at 30s luggage (3,1) to (2,0)",
+            tenths / 10,
+            tenths % 10
+        );
+        let fleet = site(&world, &zones(2, 5), &robots, &scenario);
+        let run = fleet.run(1, Duration::from_secs(80));
+        assert_eq!(delivered(&run), 2, "gone at {tenths} tenths of a second: {}", run.log());
+        assert_eq!(fleet.violations(1, Duration::from_secs(80)), "", "gone at {tenths} tenths of a second");
+    }
+}
