@@ -38,7 +38,7 @@ fn result(count: &Counts<'_>) -> Option<String> {
 
 /// The pieces that are to be delivered: those that masters asked robots for, or more where masters did not hear of all
 /// that scenarios put down.
-pub(crate) fn asked_for(count: &Counts<'_>) -> i64 {
+fn asked_for(count: &Counts<'_>) -> i64 {
     count("luggage.requested").max(count("scenario.luggage") - count("luggage.ignored"))
 }
 

@@ -4,6 +4,7 @@
 //! In each state that can be reached no two robots hold the same block, and from each state all robots can still reach
 //! their goals.
 
+mod numbering;
 mod scenarios;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -47,6 +48,8 @@ struct Faults {
     zones: u8,
     /// Robots that somebody takes off the floor.
     gone: u8,
+    /// Robots that somebody puts back where they started.
+    back: u8,
 }
 
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -86,8 +89,8 @@ enum Message {
     Grant(Grant),
     /// What an incarnation of a robot says to all zones, as one of them hears it.
     Clear(u32, u64, ClearTerm),
-    /// To a zone: this robot is gone.
-    Gone(usize, u32),
+    /// To a zone: this robot is gone, which was this incarnation of it then.
+    Gone(usize, u32, u64),
 }
 
 impl Message {
@@ -279,12 +282,15 @@ impl State {
         match message {
             Message::Territory(robot, _) | Message::Grant(Grant { robot, .. })
                 if self.robots[*robot as usize - 1].is_gone => {}
-            Message::Gone(zone, robot) => {
+            Message::Gone(zone, robot, incarnation) => {
                 self.network.retain(|other| other != message);
-                let incarnation = self.robots[*robot as usize - 1].passage.incarnation();
-                self.zones[*zone].ledger.end(*robot, incarnation);
-                self.zones[*zone].unheard.remove(robot);
-                self.plan(*zone, false, ground, rules);
+                // A robot that the zone heard of since then is back.
+                let known = self.zones[*zone].ledger.member(*robot);
+                if known.is_none_or(|known| known.request.incarnation <= *incarnation) {
+                    self.zones[*zone].ledger.end(*robot, *incarnation);
+                    self.zones[*zone].unheard.remove(robot);
+                    self.plan(*zone, false, ground, rules);
+                }
             }
             Message::Territory(robot, territory) => {
                 let robot = *robot as usize - 1;
@@ -317,12 +323,45 @@ impl State {
         }
     }
 
+    /// Somebody puts a robot that is gone back where it started, where no other one drives.
+    fn put_back(&self, robot: usize, rules: &Scenario) -> Option<State> {
+        let (x, y) = rules.robots[robot].0;
+        let start = Block::new(x, y);
+        let drives = |other: &Robot| !other.is_gone && other.passage.held().iter().any(|held| held.step.block == start);
+        let number = self.robots[robot].passage.robot();
+        let is_granted = |zone: &Zone| zone.ledger.holder(start).is_some_and(|holder| holder != number);
+        if !self.robots[robot].is_gone || self.robots.iter().any(drives) || self.zones.iter().any(is_granted) {
+            return None;
+        }
+        let mut back = self.clone();
+        back.faults.back -= 1;
+        let one = &mut back.robots[robot];
+        one.passage = Passage::new(number, one.passage.incarnation() + 1, start);
+        (one.is_gone, one.at, one.moving) = (false, start, None);
+        for zone in &self.zones {
+            one.passage.hear_territory(zone.ledger.territory());
+        }
+        back.answer(robot);
+        // Until its zone has heard of it, nothing keeps others from its block.
+        for message in back.network.clone() {
+            if let Message::Request(request) = message
+                && (request.robot, request.incarnation) == (number, back.robots[robot].passage.incarnation())
+            {
+                back.zones[request.zone as usize - 1].ledger.hear(&request);
+            }
+        }
+        Some(back)
+    }
+
     fn successors(&self, ground: &mut Ground, rules: &Scenario) -> Vec<State> {
         let mut all = Vec::new();
         for message in &self.network {
             let mut next = self.clone();
             next.deliver(message, ground, rules);
             all.push(next);
+        }
+        if self.faults.back > 0 {
+            all.extend((0..self.robots.len()).filter_map(|robot| self.put_back(robot, rules)));
         }
         for robot in (0..self.robots.len()).filter(|robot| !self.robots[*robot].is_gone) {
             let mut next = self.clone();
@@ -340,7 +379,8 @@ impl State {
                 let one = &mut taken.robots[robot];
                 (one.is_gone, one.moving) = (true, None);
                 let number = one.passage.robot();
-                (0..self.zones.len()).for_each(|zone| taken.send(Message::Gone(zone, number)));
+                let incarnation = one.passage.incarnation();
+                (0..self.zones.len()).for_each(|zone| taken.send(Message::Gone(zone, number, incarnation)));
                 // Its program may have ended before.
                 let mut ended = taken.clone();
                 taken.robots[robot].passage.leave_floor();
@@ -386,112 +426,4 @@ impl State {
         }
         all
     }
-
-    /// Drops messages about terms that nobody waits for any more, and that change nothing when they come again.
-    fn drop_answered(&mut self) {
-        let State { zones, robots, network, faults, .. } = self;
-        network.retain(|message| {
-            let reader = match message {
-                Message::Territory(robot, _) => *robot,
-                Message::Grant(grant) => grant.robot,
-                Message::Request(request) => {
-                    // What changes nothing now does not later on, since the robot says nothing new.
-                    let ledger = &zones[request.zone as usize - 1].ledger;
-                    return !ledger.has_ended(request.robot, request.incarnation)
-                        || ledger.clone().hear(request) != Heard::Nothing;
-                }
-                Message::Clear(..) | Message::Gone(..) => 0,
-            };
-            if reader != 0 && robots[reader as usize - 1].is_gone {
-                return false;
-            }
-            let (robot, zone, is_known) = match message {
-                Message::Territory(robot, territory) => {
-                    let known = robots[*robot as usize - 1].passage.territories();
-                    let known = known.iter().find(|known| known.zone == territory.zone);
-                    (robot, territory.zone, known.is_some_and(|known| known.term >= territory.term))
-                }
-                Message::Clear(robot, incarnation, clear) => {
-                    let member = zones[clear.zone as usize - 1].ledger.member(*robot);
-                    let is_known = member.is_none_or(|member| member.request.incarnation >= *incarnation);
-                    (robot, clear.zone, is_known || clear.term < zones[clear.zone as usize - 1].ledger.territory().term)
-                }
-                Message::Request(_) | Message::Grant(_) | Message::Gone(..) => return true,
-            };
-            !is_known || faults.zones > 0 || zones[zone as usize - 1].unheard.contains(robot)
-        });
-    }
-
-    /// Numbers requests and steps anew, from 1 on and in the same order. The protocol compares them, and gives new ones
-    /// numbers above all others, so that states that differ in their numbers alone go on alike.
-    fn renumber(&mut self) {
-        self.drop_answered();
-        let mut requests: HashMap<u64, BTreeMap<u64, u64>> = HashMap::new();
-        let mut steps = requests.clone();
-        self.visit(|of, link, number| {
-            let numbers = if of == Numbered::Request { &mut requests } else { &mut steps };
-            numbers.entry(link).or_default().insert(*number, 0);
-        });
-        for numbers in requests.values_mut().chain(steps.values_mut()) {
-            numbers.entry(0).or_default();
-            numbers.values_mut().zip(0..).for_each(|(new, place)| *new = place);
-        }
-        self.visit(|of, link, number| {
-            let numbers = if of == Numbered::Request { &requests } else { &steps };
-            *number = numbers[&link][number];
-        });
-        self.network.sort_by_cached_key(hash);
-    }
-
-    /// Shows all numbers of requests and steps, with their links.
-    fn visit(&mut self, mut see: impl FnMut(Numbered, u64, &mut u64)) {
-        let of_request = |request: &mut GrantRequest, see: &mut dyn FnMut(Numbered, u64, &mut u64)| {
-            see(Numbered::Request, request.link, &mut request.number);
-            see(Numbered::Step, request.link, &mut request.received);
-            request.held.iter_mut().for_each(|step| see(Numbered::Step, request.link, &mut step.number));
-        };
-        for Robot { passage, .. } in &mut self.robots {
-            let robot = passage.robot();
-            let (mut held, mut links) = (passage.held().to_vec(), passage.links().to_vec());
-            for one in held.iter_mut().filter(|one| one.zone != 0) {
-                see(Numbered::Step, link(one.zone, robot), &mut one.step.number);
-            }
-            for one in &mut links {
-                let link = link(one.territory.zone, robot);
-                see(Numbered::Step, link, &mut one.received);
-                see(Numbered::Request, link, &mut one.heard);
-                // What it said before it said anything has no link.
-                let before = std::mem::replace(&mut one.said.link, link);
-                of_request(&mut one.said, &mut see);
-                one.said.link = before;
-            }
-            *passage = Passage::with(robot, passage.incarnation(), held, passage.territories().to_vec(), links);
-        }
-        for Zone { ledger, .. } in &mut self.zones {
-            let zone = ledger.territory().zone;
-            for robot in ledger.members().keys().copied().collect::<Vec<_>>() {
-                let member = ledger.member_mut(robot).unwrap();
-                see(Numbered::Step, link(zone, robot), &mut member.granted);
-                member.steps.iter_mut().for_each(|step| see(Numbered::Step, link(zone, robot), &mut step.number));
-                of_request(&mut member.request, &mut see);
-            }
-        }
-        for message in &mut self.network {
-            match message {
-                Message::Territory(..) | Message::Clear(..) | Message::Gone(..) => {}
-                Message::Request(request) => of_request(request, &mut see),
-                Message::Grant(grant) => {
-                    see(Numbered::Request, grant.link, &mut grant.heard);
-                    grant.steps.iter_mut().for_each(|step| see(Numbered::Step, grant.link, &mut step.number));
-                }
-            }
-        }
-    }
-}
-
-/// What has a number.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Numbered {
-    Request,
-    Step,
 }

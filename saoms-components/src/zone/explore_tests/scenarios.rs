@@ -29,7 +29,7 @@ const BAY: Scenario = Scenario {
 const BORDER: Scenario =
     Scenario { name: "border", map: "...", zones: &[(0, 2), (2, 1)], robots: &[((0, 0), (2, 0))], ..SQUARE };
 
-const NONE: Faults = Faults { robots: 0, zones: 0, gone: 0 };
+const NONE: Faults = Faults { robots: 0, zones: 0, gone: 0, back: 0 };
 
 fn explore(scenarios: &[Scenario]) {
     for scenario in scenarios {
@@ -101,4 +101,10 @@ fn robots_that_are_taken_off_the_floor_lead_to_no_collision_and_no_standstill() 
     let faults = Faults { gone: 1, ..NONE };
     explore(&[QUEUE, BORDER].map(|scenario| Scenario { faults, ..scenario }));
     explore(&[SQUARE, ROUND, TRAIN].map(|scenario| Scenario { faults, arriving: 1, ..scenario }));
+}
+
+#[test]
+fn robots_that_are_gone_and_come_back_lead_to_no_collision_and_no_standstill() {
+    let faults = Faults { gone: 1, back: 1, ..NONE };
+    explore(&[BORDER, SQUARE, ROUND].map(|scenario| Scenario { faults, arriving: 1, ..scenario }));
 }

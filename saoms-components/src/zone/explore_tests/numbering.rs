@@ -1,0 +1,118 @@
+//! States that differ in what makes no difference are one.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::{Message, Robot, State, Zone, hash};
+use crate::messages::{GrantRequest, link};
+use crate::zone::ledger::Heard;
+use crate::zone::passage::Passage;
+
+impl State {
+    /// Drops messages about terms that nobody waits for any more, and that change nothing when they come again.
+    fn drop_answered(&mut self) {
+        let State { zones, robots, network, faults, .. } = self;
+        network.retain(|message| {
+            let reader = match message {
+                Message::Territory(robot, _) => *robot,
+                Message::Grant(grant) => grant.robot,
+                Message::Request(request) => {
+                    // What changes nothing now does not later on, since the robot says nothing new.
+                    let ledger = &zones[request.zone as usize - 1].ledger;
+                    return !ledger.has_ended(request.robot, request.incarnation)
+                        || ledger.clone().hear(request) != Heard::Nothing;
+                }
+                Message::Clear(..) | Message::Gone(..) => 0,
+            };
+            if reader != 0 && robots[reader as usize - 1].is_gone && faults.back == 0 {
+                return false;
+            }
+            let (robot, zone, is_known) = match message {
+                Message::Territory(robot, territory) => {
+                    let known = robots[*robot as usize - 1].passage.territories();
+                    let known = known.iter().find(|known| known.zone == territory.zone);
+                    (robot, territory.zone, known.is_some_and(|known| known.term >= territory.term))
+                }
+                Message::Clear(robot, incarnation, clear) => {
+                    let member = zones[clear.zone as usize - 1].ledger.member(*robot);
+                    let is_known = member.is_none_or(|member| member.request.incarnation >= *incarnation);
+                    (robot, clear.zone, is_known || clear.term < zones[clear.zone as usize - 1].ledger.territory().term)
+                }
+                Message::Request(_) | Message::Grant(_) | Message::Gone(..) => return true,
+            };
+            !is_known || faults.zones > 0 || zones[zone as usize - 1].unheard.contains(robot)
+        });
+    }
+
+    /// Numbers requests and steps anew, from 1 on and in the same order. The protocol compares them, and gives new ones
+    /// numbers above all others, so that states that differ in their numbers alone go on alike.
+    pub(super) fn renumber(&mut self) {
+        self.drop_answered();
+        let mut requests: HashMap<u64, BTreeMap<u64, u64>> = HashMap::new();
+        let mut steps = requests.clone();
+        self.visit(|of, link, number| {
+            let numbers = if of == Numbered::Request { &mut requests } else { &mut steps };
+            numbers.entry(link).or_default().insert(*number, 0);
+        });
+        for numbers in requests.values_mut().chain(steps.values_mut()) {
+            numbers.entry(0).or_default();
+            numbers.values_mut().zip(0..).for_each(|(new, place)| *new = place);
+        }
+        self.visit(|of, link, number| {
+            let numbers = if of == Numbered::Request { &requests } else { &steps };
+            *number = numbers[&link][number];
+        });
+        self.network.sort_by_cached_key(hash);
+    }
+
+    /// Shows all numbers of requests and steps, with their links.
+    fn visit(&mut self, mut see: impl FnMut(Numbered, u64, &mut u64)) {
+        let of_request = |request: &mut GrantRequest, see: &mut dyn FnMut(Numbered, u64, &mut u64)| {
+            see(Numbered::Request, request.link, &mut request.number);
+            see(Numbered::Step, request.link, &mut request.received);
+            request.held.iter_mut().for_each(|step| see(Numbered::Step, request.link, &mut step.number));
+        };
+        for Robot { passage, .. } in &mut self.robots {
+            let robot = passage.robot();
+            let (mut held, mut links) = (passage.held().to_vec(), passage.links().to_vec());
+            for one in held.iter_mut().filter(|one| one.zone != 0) {
+                see(Numbered::Step, link(one.zone, robot), &mut one.step.number);
+            }
+            for one in &mut links {
+                let link = link(one.territory.zone, robot);
+                see(Numbered::Step, link, &mut one.received);
+                see(Numbered::Request, link, &mut one.heard);
+                // What it said before it said anything has no link.
+                let before = std::mem::replace(&mut one.said.link, link);
+                of_request(&mut one.said, &mut see);
+                one.said.link = before;
+            }
+            *passage = Passage::with(robot, passage.incarnation(), held, passage.territories().to_vec(), links);
+        }
+        for Zone { ledger, .. } in &mut self.zones {
+            let zone = ledger.territory().zone;
+            for robot in ledger.members().keys().copied().collect::<Vec<_>>() {
+                let member = ledger.member_mut(robot).unwrap();
+                see(Numbered::Step, link(zone, robot), &mut member.granted);
+                member.steps.iter_mut().for_each(|step| see(Numbered::Step, link(zone, robot), &mut step.number));
+                of_request(&mut member.request, &mut see);
+            }
+        }
+        for message in &mut self.network {
+            match message {
+                Message::Territory(..) | Message::Clear(..) | Message::Gone(..) => {}
+                Message::Request(request) => of_request(request, &mut see),
+                Message::Grant(grant) => {
+                    see(Numbered::Request, grant.link, &mut grant.heard);
+                    grant.steps.iter_mut().for_each(|step| see(Numbered::Step, grant.link, &mut step.number));
+                }
+            }
+        }
+    }
+}
+
+/// What has a number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Numbered {
+    Request,
+    Step,
+}
