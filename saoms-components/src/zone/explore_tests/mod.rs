@@ -7,7 +7,7 @@
 mod numbering;
 mod scenarios;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
 use super::ground::Ground;
@@ -16,7 +16,7 @@ use super::maneuver::Maneuver;
 use super::passage::{Passage, Wish};
 use super::plan::plan;
 use crate::grid::{Block, Map};
-use crate::messages::{ClearTerm, Grant, GrantRequest, Standing, Territory, link};
+use crate::messages::{ClearTerm, Grant, GrantRequest, Standing, Territory};
 
 type Spot = (i32, i32);
 
