@@ -37,6 +37,9 @@ struct SaomsHostHandle;
 // The version of the boundary. A program loads libraries of its own version alone.
 #define SAOMS_ABI_VERSION 3
 
+// The version of the boundary to transports, which changes when a table, a structure or a rule of it changes.
+#define SAOMS_TRANSPORT_VERSION 1
+
 // Bytes that are lent for the time of a call.
 typedef struct SaomsBytes {
     // The first byte; may be null when there are none.
@@ -64,6 +67,10 @@ typedef uint32_t SaomsStatus;
 #define SaomsStatus_MISMATCH 6
 // The provider failed; the text is its name, a zero byte, and its words.
 #define SaomsStatus_PROVIDER_FAILED 7
+// A transport or the program has no room for a message now. No text comes with it.
+#define SaomsStatus_FULL 8
+// Nobody answers at the url of a network now.
+#define SaomsStatus_UNREACHABLE 9
 
 // The value of a property.
 typedef struct SaomsPropertyView {
@@ -670,5 +677,73 @@ typedef struct SaomsPluginTable {
 
 // The function by which a library gives its table: it takes the version of the program's boundary.
 typedef const struct SaomsPluginTable *(*SaomsEntry)(uint32_t version);
+
+// The functions of the program that a session calls, from threads of its own. They do not wait for long, and are
+// valid until `close` returns.
+typedef struct SaomsTransportEvents {
+    // The size of this table in bytes.
+    size_t size;
+    // The program's own; the first argument of each function.
+    void *state;
+    // Delivers a message of a subscription. `FULL`: the program cannot take it now. The session delivers it again,
+    // after it has waited or stopped to read; one that cannot wait drops it.
+    SaomsStatus (*deliver)(void *state,
+                           uint64_t token,
+                           struct SaomsBytes key,
+                           struct SaomsBytes message,
+                           struct SaomsBytes attachment);
+    // Tells that the link to the network was lost (0) or is there again (1), with a reason for people.
+    void (*link)(void *state, uint32_t is_up, struct SaomsBytes reason);
+} SaomsTransportEvents;
+
+// The functions of a transport: a library that carries messages between programs, as well as it can. It may lose,
+// repeat and reorder them; the program above makes up for that.
+//
+// The first argument of each function but `open` is a session. They are called from any thread, several at once, and
+// never after `close`. A key is text of parts between `/`, of printable ASCII characters without `*`, `$`, `#` and
+// `?`; in the keys of a subscription a part `*` is any one part, and `**` at the end any number of parts.
+typedef struct SaomsTransportTable {
+    // The size of this table in bytes.
+    size_t size;
+    // The version of the boundary that the library was built with.
+    uint32_t version;
+    // The metadata, as in its own section of the library.
+    struct SaomsBytes metadata;
+    // Joins a network, and with `listen` is the place where others join it. `settings` is a JSON text:
+    //
+    // | member | meaning |
+    // | --- | --- |
+    // | `url` | where the network is, as the composite says it |
+    // | `listen` | true: this program is the network's router, and listens at the url |
+    // | `user`, `password` | of the user; a listener asks for them; may be missing |
+    // | `tls` | `ca`, `certificate` and `key`: paths of files; may be missing |
+    //
+    // Waits for no longer than a second. `UNREACHABLE`: nobody answers at the url now, and the program tries again.
+    // `FAILED`: it will not help to try again. Both with a text in `error`. A session that was opened connects again
+    // by itself after its link was lost.
+    SaomsStatus (*open)(struct SaomsBytes settings,
+                        const struct SaomsTransportEvents *events,
+                        void **session,
+                        struct SaomsSink error);
+    // Sends a message, with what the program says beside it, to all sessions of the network that subscribe to its
+    // key, but not to this one. Must not wait. `FULL`: too much waits to be sent; the program keeps the message and
+    // tries again. `urgent` is 1 for the few short messages, such as signs of life, that should overtake others.
+    SaomsStatus (*put)(void *session,
+                       struct SaomsBytes key,
+                       struct SaomsBytes message,
+                       struct SaomsBytes attachment,
+                       uint32_t urgent,
+                       struct SaomsSink error);
+    // Asks for the messages of all keys that fit, which are delivered with this token.
+    SaomsStatus (*subscribe)(void *session, struct SaomsBytes keys, uint64_t token, struct SaomsSink error);
+    // Ends the subscription with this token.
+    SaomsStatus (*unsubscribe)(void *session, uint64_t token, struct SaomsSink error);
+    // Sends what waits, for no longer than a second, leaves the network and frees the session. When it returns, no
+    // function of `events` runs or is called again.
+    void (*close)(void *session);
+} SaomsTransportTable;
+
+// The function by which a transport gives its table: it takes the version of the program's boundary.
+typedef const struct SaomsTransportTable *(*SaomsTransportEntry)(uint32_t version);
 
 #endif  /* SAOMS_H */

@@ -34,6 +34,7 @@ mod region;
 mod rule;
 mod status;
 mod stop;
+mod transport;
 mod value;
 
 pub use bytes::{Bytes, MAX_BYTES, Sink, list};
@@ -49,6 +50,7 @@ pub use region::{DepartedView, RegionView};
 pub use rule::{FleetList, MemberView, RenamedView, RuleTable, TextList, WireView};
 pub use status::Status;
 pub use stop::StopView;
+pub use transport::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportEntry, TransportEvents, TransportTable};
 pub use value::{PropertyView, RecordView, ReportView, ValueView};
 
 /// The version of the boundary. A program loads libraries of its own version alone.

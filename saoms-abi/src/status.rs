@@ -21,4 +21,8 @@ impl Status {
     pub const MISMATCH: Status = Status(6);
     /// The provider failed; the text is its name, a zero byte, and its words.
     pub const PROVIDER_FAILED: Status = Status(7);
+    /// A transport or the program has no room for a message now. No text comes with it.
+    pub const FULL: Status = Status(8);
+    /// Nobody answers at the url of a network now.
+    pub const UNREACHABLE: Status = Status(9);
 }

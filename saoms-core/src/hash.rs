@@ -9,3 +9,8 @@ pub(crate) fn fold(state: u64, word: u64) -> u64 {
     let product = u128::from(state ^ FIRST) * u128::from(word ^ SECOND);
     (product as u64) ^ ((product >> 64) as u64)
 }
+
+/// The hash of a text: the same on every machine, in every program.
+pub(crate) fn text_hash(text: &str) -> u64 {
+    text.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte)))
+}

@@ -7,6 +7,7 @@ pub mod bus;
 pub mod fault;
 mod hash;
 pub mod journal;
+pub mod network;
 pub mod observe;
 pub mod plugin;
 pub mod report;

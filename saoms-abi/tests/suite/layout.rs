@@ -78,6 +78,8 @@ fn layout() -> String {
         RegionView { least, most }
         DepartedView { key, sender }
         StopView { size, state, stop, heartbeat, release }
+        TransportTable { size, version, metadata, open, put, subscribe, unsubscribe, close }
+        TransportEvents { size, state, deliver, link }
         RuleTable { size, state, check }
         FleetList { components, component_count, missing, missing_count }
         TextList { texts, count }
@@ -88,6 +90,7 @@ fn layout() -> String {
     let functions = [
         ("Entry", type_name::<EntryPoint>()),
         ("Construct", type_name::<Construct>()),
+        ("TransportEntry", type_name::<TransportEntry>()),
         ("LoopVisitor", type_name::<LoopVisitor>()),
         ("PublisherVisitor", type_name::<PublisherVisitor>()),
     ];
@@ -95,7 +98,7 @@ fn layout() -> String {
     for (name, of) in functions {
         let _ = writeln!(text, "{name}: {}", short(of));
     }
-    let _ = writeln!(text, "SECTION: {SECTION}\nMAX_BYTES: {MAX_BYTES}");
+    let _ = writeln!(text, "SECTION: {SECTION}\nTRANSPORT_SECTION: {TRANSPORT_SECTION}\nMAX_BYTES: {MAX_BYTES}");
     text
 }
 

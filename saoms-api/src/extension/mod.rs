@@ -9,6 +9,7 @@
 //! - [`InvariantsRegistration`]: what has to hold in each run, whatever is done to the fleet (`saoms simulate`),
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
+//! - [`RouterClass`]: a class whose components are routers of networks,
 //! - [`FailureNotice`]: what a fleet is told of a component that failed and lost what it knew.
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
@@ -19,6 +20,7 @@ mod failures;
 mod invariants;
 mod language;
 mod picture;
+mod routers;
 mod summary;
 
 pub use inventory::submit;
@@ -33,4 +35,5 @@ pub use language::{
     RaisedFault,
 };
 pub use picture::{PictureRegistration, RunPicture};
+pub use routers::RouterClass;
 pub use summary::{Counts, RunSummary};

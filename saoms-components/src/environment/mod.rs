@@ -227,6 +227,7 @@ impl Environment {
             if !self.has_world && !job.is_visit {
                 context.count("luggage.open", counted);
                 context.count("luggage.given_up", 1 + counted);
+                context.count("scenario.delivered", -counted);
             }
         }
     }

@@ -49,7 +49,7 @@ pub struct Bus {
 }
 
 /// A topic of a [`Bus`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TopicId(u32);
 
 impl TopicId {

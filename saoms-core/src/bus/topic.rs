@@ -9,7 +9,7 @@ use super::events::EventLog;
 use super::links::Readers;
 use super::regions::RegionReaders;
 use super::state::StateTable;
-use crate::hash::fold;
+use crate::hash::text_hash;
 
 /// A topic of the bus: its type, its users and its stored messages.
 pub(super) struct BusTopic {
@@ -53,7 +53,7 @@ pub(super) enum ReadPosition {
 impl BusTopic {
     pub(super) fn new(name: Arc<str>, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> BusTopic {
         BusTopic {
-            name_hash: name.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte))),
+            name_hash: text_hash(&name),
             name,
             users: 1,
             triggers: Vec::new(),

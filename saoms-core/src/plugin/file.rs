@@ -7,7 +7,6 @@ use std::path::Path;
 use object::elf::{self, FileHeader64, Machine};
 use object::read::elf::{FileHeader as _, ProgramHeader as _, SectionHeader as _};
 use object::{Endianness, FileKind, ReadCache};
-use saoms_abi::SECTION;
 
 use super::PluginError;
 
@@ -20,8 +19,8 @@ const LARGEST: u64 = 4 << 30;
 /// Longer texts are no metadata: those of a hundred classes have some hundred kilobytes.
 const LARGEST_METADATA: u64 = 64 << 20;
 
-/// The text of the section.
-pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
+/// The text of the section of this name.
+pub(crate) fn read_section(path: &Path, section: &str) -> Result<String, PluginError> {
     let path_of = || path.to_owned();
     let unreadable = |message: String| PluginError::Unreadable { path: path_of(), message };
     let about = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
@@ -63,7 +62,7 @@ pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
         }
     }
     let sections = header.sections(endian, bytes).map_err(broken)?;
-    let Some((_, section)) = sections.section_by_name(endian, SECTION.as_bytes()) else {
+    let Some((_, section)) = sections.section_by_name(endian, section.as_bytes()) else {
         return Err(PluginError::NoMetadata { path: path_of() });
     };
     if section.sh_size(endian) > LARGEST_METADATA {

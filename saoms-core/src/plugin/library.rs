@@ -9,35 +9,46 @@ use std::sync::{Mutex, PoisonError};
 use std::{error, fmt, fs, slice};
 
 use libloading::os::unix::{Library, Symbol};
-use saoms_abi::{EntryPoint, PluginTable, VERSION};
+use saoms_abi::{PluginTable, VERSION};
 use saoms_api::host::present::{self, Function, Owner, enter, looked_after};
 
 use super::copy::{FLAGS, PrivateCopy};
 use super::tables::{all, whole};
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
-/// Loads a library. It is never unloaded.
-pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
+/// Loads a library, and gives what its entry gives for this version of a boundary: null or a constant table. It is
+/// never unloaded.
+pub(crate) fn load_table<T>(
+    path: &Path,
+    package: &str,
+    entry: &str,
+    version: u32,
+) -> Result<(&'static str, *const T), PluginError> {
     let unloadable =
-        |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
+        |message: String| PluginError::Unloadable { path: path.to_owned(), package: package.to_owned(), message };
     let name: &'static str = path.display().to_string().leak();
     let owner = Owner::of_library(name);
     let _looked = looked_after(owner, Function::Load);
     let _entered = enter(owner, Function::Load);
     let library = loaded(path).map_err(unloadable)?;
-    let table = {
-        let missing = |why: &str| unloadable(format!("it has no function `{}`: {why}", metadata.entry));
-        // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
-        let entry: Symbol<EntryPoint> =
-            unsafe { library.code.get(metadata.entry.as_bytes()) }.map_err(|error| missing(&with_causes(&error)))?;
-        // The system also finds those of the libraries that it depends on, such as `_exit`.
-        if !library.has(*entry as usize) {
-            return Err(missing("it is one of another library"));
-        }
-        note_code(name, *entry as usize);
-        // SAFETY: the same.
-        unsafe { entry(VERSION) }
-    };
+    let missing = |why: &str| unloadable(format!("it has no function `{entry}`: {why}"));
+    // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
+    let entry: Symbol<unsafe extern "C" fn(u32) -> *const T> =
+        unsafe { library.code.get(entry.as_bytes()) }.map_err(|error| missing(&with_causes(&error)))?;
+    // The system also finds those of the libraries that it depends on, such as `_exit`.
+    if !library.has(*entry as usize) {
+        return Err(missing("it is one of another library"));
+    }
+    note_code(name, *entry as usize);
+    // SAFETY: the same.
+    Ok((name, unsafe { entry(version) }))
+}
+
+/// Loads a library of components. It is never unloaded.
+pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
+    let unloadable =
+        |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
+    let (name, table) = load_table::<PluginTable>(path, &metadata.package, &metadata.entry, VERSION)?;
     // SAFETY: by the same rules the table is null or constant; what a table of this version begins with is there.
     let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it returns no table".to_owned()))?;
     let disagrees =

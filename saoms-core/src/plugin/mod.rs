@@ -19,6 +19,7 @@ mod tables;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use saoms_abi::SECTION;
 use saoms_api::host::{DynComponent, DynLoop, PropertyValue};
 use saoms_api::rule::FleetView;
 use saoms_api::{Failure, Finding};
@@ -26,6 +27,8 @@ use smol_str::SmolStr;
 
 pub use boundary::{ImportedClass, ImportedLoopClass, ImportedRule};
 pub use error::PluginError;
+pub(crate) use file::read_section;
+pub(crate) use library::load_table;
 pub use metadata::Metadata;
 pub use search::{FoundLibraries, Search};
 
@@ -69,7 +72,7 @@ impl Plugin {
     }
 
     fn read(path: &Path, use_of_code: CodeUse) -> Result<Arc<Plugin>, PluginError> {
-        let text = file::read_section(path)?;
+        let text = file::read_section(path, SECTION)?;
         let metadata = metadata::read(path, &text)?;
         Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, use_of_code, code: OnceLock::new() }))
     }

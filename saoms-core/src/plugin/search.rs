@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
+use saoms_abi::TRANSPORT_SECTION;
 use saoms_lang::project::{Classes, PluginFault};
 use saoms_lang::registry::{Registry, RegistryError};
 use saoms_lang::source::identity;
 
+use super::file::read_section;
 use super::{CodeUse, Plugin, PluginError};
 
 /// Places in which libraries are searched.
@@ -88,6 +90,8 @@ impl Search {
             }
             match self.plugin(path) {
                 Ok(plugin) => found.plugins.push(plugin),
+                // It is named to be used by a network.
+                Err(PluginError::NoMetadata { .. }) if read_section(path, TRANSPORT_SECTION).is_ok() => {}
                 Err(error) if named => found.errors.push(error),
                 Err(PluginError::NoMetadata { .. } | PluginError::NoLibrary { .. }) => {}
                 Err(error) => found.left_out.push(error),

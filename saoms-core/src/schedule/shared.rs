@@ -8,6 +8,7 @@ use saoms_api::Time;
 use super::drive::pulse::Pulse;
 use super::engine::Engine;
 use super::names::SlotNames;
+use super::networks::RemoteNames;
 use super::os::clock::Clock;
 use super::os::sys::Gate;
 use super::settings::Settings;
@@ -27,6 +28,8 @@ pub(super) struct Shared {
     sections: Mutex<Sections>,
     /// The paths of components by their numbers.
     pub(super) names: SlotNames,
+    /// The paths of components of other programs.
+    pub(super) remote_names: RemoteNames,
     /// Functions that stop hardware.
     pub(super) stops: Arc<Stops>,
     /// Lock of changes of the fleet: one at a time.
@@ -80,6 +83,7 @@ impl Shared {
             engine: Mutex::new(engine),
             sections: Mutex::new(Sections::with_registered_counts()),
             names: SlotNames::default(),
+            remote_names: RemoteNames::default(),
             changes: Mutex::default(),
             returned: Condvar::new(),
             settings,
@@ -121,6 +125,11 @@ impl Shared {
         let wake = std::mem::take(&mut engine.wake);
         if std::mem::take(&mut engine.has_returned) {
             self.returned.notify_all();
+        }
+        // Left in order, so it is left while the engine is locked.
+        let networks = &mut engine.networks;
+        if !networks.waiting.is_empty() {
+            networks.leave();
         }
         let notifications = std::mem::take(&mut engine.notifications);
         let is_delivering = !notifications.is_empty();

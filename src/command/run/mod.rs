@@ -8,6 +8,7 @@ mod events;
 pub(super) mod faults;
 mod log_file;
 mod log_lines;
+mod networks;
 mod notify;
 mod outputs;
 mod picture_file;
@@ -49,6 +50,7 @@ use events::{Events, Numbers, Unreadable};
 use faults::{FaultScript, Known, report_wrong};
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
+use networks::Networks;
 use notify::Notifier;
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
@@ -247,6 +249,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
             }
         }
     }
+    let networks = match Networks::of(arguments, &assembly) {
+        Ok(networks) => networks,
+        Err(exit) => return exit,
+    };
     let store = match state::open(arguments) {
         Ok(store) => store,
         Err(exit) => return exit,
@@ -307,7 +313,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     };
     observers.extend(control.iter().flat_map(Control::observers));
     signals.starts(assembly.run.hangup);
-    let mut server = None;
+    let (mut server, mut clients) = (None, Vec::new());
     let before = |handle: &Handle| {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
         signals.reaches(handle);
@@ -316,6 +322,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         // A run that has not begun does not end, and only one in virtual time has a speed.
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
+        clients = networks.join(handle, || signals.has_come())?;
         server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts));
         Ok(())
     };
@@ -352,6 +359,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         limit_patience(arguments.grace);
     }
     crate::guard::look_at_end();
+    // Others receive what the components sent last.
+    drop(clients);
     let outcome = fleet.run_to_end().outcome;
     delivery.finish();
     drop((hold, reload, server, notifier));

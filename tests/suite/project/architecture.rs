@@ -30,7 +30,7 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "crate::",
         &[
             "hash", "plugin", "assemble", "bus", "journal", "adaptation", "report", "status", "observe", "fault",
-            "store", "schedule",
+            "store", "network", "schedule",
         ],
     ),
 ];

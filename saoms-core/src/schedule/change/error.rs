@@ -83,6 +83,13 @@ pub enum StartError {
     Observer(Failure),
     /// The system refused to create a thread.
     Thread(io::Error),
+    /// The program cannot take part in a network.
+    Network {
+        /// Where the network is.
+        url: String,
+        /// What its transport says.
+        error: String,
+    },
 }
 
 impl fmt::Display for StartError {
@@ -97,6 +104,7 @@ impl fmt::Display for StartError {
             StartError::Thread(error) => {
                 write!(formatter, "the system cannot create a thread for the fleet: {error}")
             }
+            StartError::Network { url, error } => write!(formatter, "the network `{url}` cannot be used: {error}"),
         }
     }
 }
@@ -104,7 +112,7 @@ impl fmt::Display for StartError {
 impl std::error::Error for StartError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            StartError::Component { .. } | StartError::Observer(_) => None,
+            StartError::Component { .. } | StartError::Observer(_) | StartError::Network { .. } => None,
             StartError::Realtime(error) => Some(error),
             StartError::Thread(error) => Some(error),
         }

@@ -52,14 +52,17 @@ impl Engine {
                 Some(known) if self.slots[*known as usize].is_member() => Stored::default(),
                 _ => self.stored_of(&spec.path),
             };
+            let network = self.networks.of(&spec);
             if let Some(slot) = self.slots.get_mut(number as usize) {
+                slot.network = network;
                 slot.revive(spec, stored);
                 continue;
             }
             if let Some(records) = &self.records {
                 records.join(ComponentName::of(&spec), self.phase != RunPhase::Starting);
             }
-            let slot = Slot::new(number, spec, stored);
+            let mut slot = Slot::new(number, spec, stored);
+            slot.network = network;
             names.push(Arc::clone(&slot.name));
             self.numbers.insert(Arc::clone(&slot.name), number);
             self.slots.push(slot);

@@ -20,6 +20,7 @@ use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
+use crate::schedule::networks::NO_NETWORK;
 use crate::schedule::shared::Shared;
 use crate::schedule::topics::takers::EventMessage;
 use saoms_lang::assembly::{ComponentSpec, Wire};
@@ -67,7 +68,7 @@ impl Host for ComponentHost<'_> {
     fn name_of(&self, sender: u32) -> Option<&str> {
         match sender {
             OUTSIDE => Some(OUTSIDE_NAME),
-            _ => self.shared.names.get(sender).map(AsRef::as_ref),
+            _ => self.shared.names.get(sender).map(AsRef::as_ref).or_else(|| self.shared.remote_names.get(sender)),
         }
     }
 
@@ -132,6 +133,10 @@ impl Host for ComponentHost<'_> {
             .map_err(|mismatch| self.differs(topic, TopicUse::Subscribe, mismatch))?;
         let id = engine.bus.topic_of(&fresh);
         engine.bus.observe(id, &observers);
+        let network = engine.slots[self.part.index as usize].network;
+        if network != NO_NETWORK {
+            engine.read_from_network(network, id);
+        }
         // An instance that replaces a failed one gets the events that came meanwhile.
         let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
         let triggers = task.trigger.has(topic.name);

@@ -137,7 +137,7 @@ impl Engine {
     }
 
     /// True if a run whose work is done need not wait for commits.
-    pub(super) fn commits_are_over(&mut self) -> bool {
+    pub(crate) fn commits_are_over(&mut self) -> bool {
         match self.last_commits {
             LastCommits::None if self.uncommitted > 0 => self.last_commits = LastCommits::UpTo(self.batches),
             LastCommits::UpTo(_) => {}

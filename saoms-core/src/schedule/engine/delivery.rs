@@ -10,6 +10,7 @@ use crate::bus::{MOST_KEYS, TopicId};
 use crate::observe::{Notification, Occurrence, SentMessage};
 use crate::schedule::component::body::Part;
 use crate::schedule::inject::OUTSIDE_NAME;
+use crate::schedule::networks::NO_NETWORK;
 
 impl Engine {
     /// Takes over the journal records of a component.
@@ -67,7 +68,11 @@ impl Engine {
             self.settle(now);
         }
         self.slots[index as usize].statistics.sent += messages.len() as u64;
+        let network = self.slots[index as usize].network;
         for (topic, message) in messages {
+            if network != NO_NETWORK {
+                self.put_on_network(network, name, topic, &message);
+            }
             if let Some(trace) = &mut self.trace {
                 trace.message(now, index, self.bus.name_hash(topic), &message);
             }

@@ -36,6 +36,7 @@ use self::votes::VoteTally;
 use super::component::body::Job;
 use super::hold::Pace;
 use super::inject::Injections;
+use super::networks::Networks;
 use super::order::PendingOrders;
 use super::settings::{ClockKind, Settings, nanos};
 use super::stop::Stops;
@@ -95,6 +96,7 @@ pub(crate) struct Engine {
     /// Counter of the journal's records.
     pub(crate) record_ids: Arc<AtomicU64>,
     pub(crate) faults: FaultPlay,
+    pub(crate) networks: Networks,
     /// When what components keep is committed, and what was kept by an earlier program.
     pub(crate) commits: Commits,
     /// Executions that kept something; those of them that are not committed; and how far the end of the run waits for
@@ -209,6 +211,7 @@ impl Engine {
             with_hardware: Vec::new(),
             record_ids: Arc::default(),
             faults: FaultPlay::new(settings.seed),
+            networks: Networks::default(),
             commits: match (settings.clock, nanos(settings.commit_delay)) {
                 (ClockKind::Real, _) | (ClockKind::Virtual, 0) => Commits::AtOnce,
                 (ClockKind::Virtual, delay) => Commits::After(delay),

@@ -9,6 +9,7 @@ use crate::journal::Ring;
 use crate::report::Lateness;
 use crate::schedule::component::body::Body;
 use crate::schedule::component::stored::Stored;
+use crate::schedule::networks::NO_NETWORK;
 use crate::schedule::settings::nanos;
 use crate::schedule::stop::hears_stops;
 use crate::status::Description;
@@ -61,6 +62,8 @@ pub(crate) struct Slot {
     pub(crate) stops_again: bool,
     /// True if it has lost what it kept, since the disk failed: its messages may depend on that, and are not sent.
     pub(crate) is_cut_off: bool,
+    /// The number of the network that it is on.
+    pub(crate) network: u8,
     pub(crate) policy: TaskPolicy,
     pub(crate) statistics: Statistics,
     /// Executions that kept something which is not committed.
@@ -284,6 +287,7 @@ impl Slot {
             statistics: Statistics::default(),
             uncommitted: VecDeque::new(),
             is_cut_off: false,
+            network: NO_NETWORK,
             journal: Ring::default(),
             overrun_failure: None,
             name,

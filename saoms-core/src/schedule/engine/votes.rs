@@ -67,10 +67,14 @@ impl Engine {
 
     /// Ends the run if all voters see no work left, and none can come from outside.
     pub(crate) fn end_if_done(&mut self, now: u64) {
-        let is_done = self.votes.voters > 0 && self.votes.done == self.votes.voters;
-        if is_done && self.injections.are_over() && self.commits_are_over() {
+        if self.votes.voters > 0 && !self.sees_work() && self.networks.are_done() {
             self.begin_stop(EndCause::Done, now);
         }
+    }
+
+    /// True if a voter sees work left, or some may come from outside.
+    pub(crate) fn sees_work(&mut self) -> bool {
+        self.votes.done < self.votes.voters || !self.injections.are_over() || !self.commits_are_over()
     }
 
     /// Removes the vote of a component that does not take part any more.

@@ -1,10 +1,14 @@
-//! The address of a message broker, `host:port`.
+//! The address of a message broker: `host:port`, or with the name of a transport `tls://host:port`.
 
 use std::net::{IpAddr, Ipv6Addr};
 use std::ops::Range;
 
 /// The port of brokers where nothing else is known: that of ActiveMQ, which the original uses.
 const USUAL_PORT: u16 = 61616;
+
+/// What people write before an address although it is no transport: plain TCP is what an address without one means,
+/// and a network is named by the text of its address.
+const NO_TRANSPORTS: [&str; 3] = ["tcp", "http", "https"];
 
 /// The fault of an address.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,19 +20,35 @@ pub(crate) struct AddressFault {
     pub(crate) instead: Option<String>,
 }
 
-/// The fault of `text` as an address: a host name, an IPv4 address, or an IPv6 address in brackets, then a colon and a
-/// port from 1 to 65535.
+/// The fault of `text` as an address: the name of a transport and `://`, unless it is plain TCP; a host name, an IPv4
+/// address, or an IPv6 address in brackets; then a colon and a port from 1 to 65535.
 pub(crate) fn fault(text: &str) -> Option<AddressFault> {
     let at = |at: Range<usize>, message: String| Some(AddressFault { at, message, instead: None });
-    if let Some(scheme) = text.find("://") {
-        let message = format!("found `{}` before host and port", &text[..scheme + 3]);
-        let rest = &text[scheme + 3..];
-        let rest = &rest[..rest.find(['/', '?']).unwrap_or(rest.len())];
-        let instead = match fault(rest) {
-            None => Some(rest.to_owned()),
-            Some(fault) => fault.instead.filter(|_| fault.at == (0..rest.len())),
+    if let Some(end) = text.find("://") {
+        let (scheme, rest) = (&text[..end], &text[end + 3..]);
+        let address = &rest[..rest.find(['/', '?']).unwrap_or(rest.len())];
+        let instead = || match fault(address) {
+            None => Some(address.to_owned()),
+            Some(fault) => fault.instead.filter(|_| fault.at == (0..address.len())),
         };
-        return Some(AddressFault { at: 0..text.len(), message, instead });
+        if NO_TRANSPORTS.contains(&scheme) {
+            let message = format!("found `{scheme}://` before host and port");
+            return Some(AddressFault { at: 0..text.len(), message, instead: instead() });
+        }
+        if let Some(found) = scheme.find(|c: char| !(c.is_ascii_alphanumeric() || "+-.".contains(c))) {
+            let character = scheme[found..].chars().next().unwrap_or(' ');
+            let message = format!("`{}` cannot be in the name of a transport", character.escape_debug());
+            return at(found..found + character.len_utf8(), message);
+        }
+        if scheme.is_empty() {
+            return at(0..3, "there is no name of a transport before `://`".to_owned());
+        }
+        let start = end + 3;
+        if address.len() < rest.len() {
+            let message = "found more behind host and port".to_owned();
+            return Some(AddressFault { at: start + address.len()..text.len(), message, instead: Some(String::new()) });
+        }
+        return fault(rest).map(|fault| AddressFault { at: fault.at.start + start..fault.at.end + start, ..fault });
     }
     let bracket = text.starts_with('[').then(|| text.find(']')).flatten();
     let colon = match bracket {

@@ -144,10 +144,12 @@ impl Task<'_, '_> {
 fn check_url(url: &Text, report: &mut Report<'_>) {
     let Some(fault) = broker_address::fault(url) else {
         if !broker_address::is_loopback(url) {
-            let message =
-                format!("message brokers are not supported yet: this program does not connect to {}", quoted(url));
+            let message = format!(
+                "messages to {} go over the network without protection: users and TLS are not supported yet",
+                quoted(url)
+            );
             let one = Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message);
-            report.push(one.help("topics work inside one program only: run the whole fleet in it"));
+            report.push(one.help("use it in a network alone that nobody else reaches"));
         }
         return;
     };

@@ -1,0 +1,347 @@
+//! The thread of a program's part of a network.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use saoms_api::Level;
+use saoms_api::host::cdr;
+
+use super::exchange::wire::Vote;
+use super::exchange::{Action, Arrived, Destination, Exchange, News, OwnMessage, Settings};
+use super::key;
+use super::port::{Frame, FromRun, Port, Waiting};
+use super::transport::TransportSession;
+
+/// Tokens of subscriptions.
+const ALIVE: u64 = 1;
+const ASK: u64 = 2;
+const COVERED: u64 = 3;
+const AGAIN: u64 = 4;
+const TOPIC: u64 = 5;
+
+/// Longest sleep of the thread.
+const LONGEST_SLEEP: Duration = Duration::from_millis(200);
+/// Time after which messages are offered again for which the fleet had no room.
+const ROOM_AGAIN: Duration = Duration::from_millis(1);
+/// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
+/// they have.
+const MOST_UNDELIVERED: usize = 4_096;
+/// Time for which a program that ends waits until others have received its events.
+const LINGER: Duration = Duration::from_secs(15);
+
+/// A message of another program for the fleet.
+#[derive(Clone, Debug)]
+pub struct FromNetwork {
+    /// The topic.
+    pub topic: Arc<str>,
+    /// The message.
+    pub arrived: Arrived,
+}
+
+/// The fleet of a program, as its part of a network sees it.
+pub trait Fleet: Send + 'static {
+    /// Takes messages from the front, as many as find room.
+    fn deliver(&self, messages: &mut VecDeque<FromNetwork>);
+
+    /// Whether it sees work left.
+    fn vote(&self) -> Vote;
+
+    /// Whether all programs of the network agree that no work is left: the run may end then.
+    fn agree(&self, is_done: bool);
+
+    /// Tells something about the network.
+    fn tell(&self, level: Level, text: String);
+}
+
+/// A program's part of a network. Dropping it leaves the network.
+#[derive(Debug)]
+pub struct Client {
+    port: Arc<Port>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Client {
+    /// Takes part in a network with this session, which delivers to the port.
+    ///
+    /// # Errors
+    /// The transport refuses a subscription, or the system a thread: why.
+    pub fn start(
+        session: TransportSession,
+        port: &Arc<Port>,
+        settings: Settings,
+        fleet: impl Fleet,
+    ) -> Result<Client, String> {
+        let (program, patience) = (settings.program, settings.patience);
+        session.subscribe(&format!("{}/alive/*", key::PREFIX), ALIVE)?;
+        session.subscribe(&key::ask(program), ASK)?;
+        session.subscribe(&key::covered(program), COVERED)?;
+        session.subscribe(&format!("{}/again/{program:x}/*", key::PREFIX), AGAIN)?;
+        let member = Member {
+            session,
+            exchange: Exchange::new(settings),
+            fleet,
+            undelivered: VecDeque::new(),
+            unsent: VecDeque::new(),
+            start: Instant::now(),
+            next: 0,
+            patience,
+            done_since: None,
+        };
+        let own = Arc::clone(port);
+        let thread = std::thread::Builder::new().name("saoms-network".to_owned());
+        let thread = thread.spawn(move || member.run(&own)).map_err(|error| error.to_string())?;
+        Ok(Client { port: Arc::clone(port), thread: Some(thread) })
+    }
+}
+
+impl Drop for Client {
+    fn drop(&mut self) {
+        self.port.close();
+        if let Some(thread) = self.thread.take() {
+            // Its panic was written to standard error.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The key, the message and the envelope of something that is to be sent.
+type Unsent = (String, Arc<[u8]>, Option<Arc<[u8]>>);
+
+/// The state of the thread.
+struct Member<F> {
+    session: TransportSession,
+    exchange: Exchange,
+    fleet: F,
+    /// Messages for which the fleet had no room.
+    undelivered: VecDeque<FromNetwork>,
+    /// What the transport had no room for.
+    unsent: VecDeque<Unsent>,
+    start: Instant,
+    /// When the exchange has something to do.
+    next: u64,
+    /// Time without a sign of life after which a program is missed, in nanoseconds: news are everywhere by then.
+    patience: u64,
+    /// Time since which no program sees work left.
+    done_since: Option<u64>,
+}
+
+impl<F: Fleet> Member<F> {
+    fn run(mut self, port: &Port) {
+        let mut ending: Option<Instant> = None;
+        loop {
+            let waiting = port.take(self.sleep(), ending.is_some());
+            let is_closed = waiting.is_closed;
+            self.take(waiting);
+            let now = self.now();
+            self.next = self.exchange.tick(now);
+            self.carry_out();
+            self.fleet.deliver(&mut self.undelivered);
+            self.agree(now);
+            if is_closed {
+                let since = *ending.get_or_insert_with(Instant::now);
+                if self.exchange.is_complete() && self.unsent.is_empty() || since.elapsed() > LINGER {
+                    break;
+                }
+            }
+        }
+        self.exchange.leave();
+        self.carry_out();
+    }
+
+    /// Lets the run end when no program has seen work left for so long that messages on their way have arrived.
+    fn agree(&mut self, now: u64) {
+        self.exchange.vote(self.fleet.vote());
+        let is_done = self.exchange.is_done() && self.exchange.is_complete() && self.undelivered.is_empty();
+        let since = self.done_since.filter(|_| is_done);
+        self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
+        self.done_since = is_done.then(|| since.unwrap_or(now));
+    }
+
+    fn now(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    fn sleep(&self) -> Duration {
+        if !self.undelivered.is_empty() || !self.unsent.is_empty() {
+            return ROOM_AGAIN;
+        }
+        Duration::from_nanos(self.next.saturating_sub(self.now())).min(LONGEST_SLEEP)
+    }
+
+    fn take(&mut self, waiting: Waiting) {
+        let (reads, messages): (Vec<FromRun>, Vec<FromRun>) =
+            waiting.from_run.into_iter().partition(|from_run| matches!(from_run, FromRun::Reads { .. }));
+        if !reads.is_empty() {
+            reads.into_iter().for_each(|reads| self.take_from_run(reads));
+            // Who answers the first message has heard what this program reads.
+            self.next = self.exchange.tick(self.now());
+            self.carry_out();
+        }
+        messages.into_iter().for_each(|message| self.take_from_run(message));
+        if waiting.lost > 0 {
+            let text =
+                format!("{} messages were sent faster than the network could take them, and are lost", waiting.lost);
+            self.fleet.tell(Level::Error, text);
+        }
+        for link in waiting.links {
+            let (level, what) = if link.is_up { (Level::Info, "is there") } else { (Level::Warning, "was lost") };
+            self.fleet.tell(level, format!("the link to the network {what}: {}", link.reason));
+        }
+        let now = self.now();
+        for frame in waiting.frames {
+            // Senders keep what is dropped here, and send it again.
+            let is_full = self.undelivered.len() > MOST_UNDELIVERED;
+            if !(is_full && matches!(frame.token, AGAIN | TOPIC)) {
+                self.take_frame(&frame, now);
+            }
+        }
+    }
+
+    fn take_from_run(&mut self, from_run: FromRun) {
+        match from_run {
+            FromRun::Reads { topic, is_state, schema } => {
+                if let Err(error) = self.session.subscribe(&key::of_topic(&topic), TOPIC) {
+                    self.fleet.tell(Level::Error, format!("topic `{topic}` cannot be read from the network: {error}"));
+                }
+                self.exchange.read(&topic, is_state, schema);
+            }
+            FromRun::Message { topic, component, to, is_state, schema, message } => {
+                let sent = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+                self.exchange.send(OwnMessage {
+                    topic: &topic,
+                    is_state,
+                    component: &component,
+                    to: to.as_deref(),
+                    key: message.key(),
+                    sent: u64::try_from(sent).unwrap_or(u64::MAX),
+                    schema,
+                    cause: message.header().cause.0,
+                    bytes: message.bytes().to_vec(),
+                });
+            }
+        }
+        self.carry_out();
+    }
+
+    fn take_frame(&mut self, frame: &Frame, now: u64) {
+        let topic = |place: usize| frame.key.split('/').nth(place).and_then(key::name);
+        // What is not what it should be comes from somebody who speaks another language: it is nothing to this program.
+        match frame.token {
+            ALIVE => {
+                if let Ok(alive) = cdr::decode(&frame.message) {
+                    self.exchange.hear(&alive, now);
+                }
+            }
+            ASK => {
+                if let Ok(again) = cdr::decode(&frame.message) {
+                    self.exchange.answer(&again);
+                }
+            }
+            COVERED => {
+                if let Ok(covered) = cdr::decode(&frame.message) {
+                    self.exchange.cover(&covered, now);
+                }
+            }
+            AGAIN | TOPIC => {
+                if let Some(topic) = topic(if frame.token == AGAIN { 4 } else { 3 }) {
+                    self.exchange.receive(&topic, &frame.message, &frame.attachment, now);
+                }
+            }
+            _ => {}
+        }
+        self.carry_out();
+    }
+
+    fn carry_out(&mut self) {
+        while let Some((key, bytes, envelope)) = self.unsent.pop_front() {
+            if !self.put(&key, &bytes, envelope.as_deref()) {
+                self.unsent.push_front((key, bytes, envelope));
+                break;
+            }
+        }
+        for action in self.exchange.take_actions() {
+            match action {
+                Action::Put { to, bytes, envelope } => {
+                    let key = match to {
+                        Destination::Topic(topic, component) => key::topic(&topic, &component),
+                        Destination::Again(program, topic) => key::again(program, &topic),
+                        Destination::Alive(program) => key::alive(program),
+                        Destination::Ask(program) => key::ask(program),
+                        Destination::Covered(program) => key::covered(program),
+                    };
+                    if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
+                        self.unsent.push_back((key, bytes, envelope));
+                    }
+                }
+                Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
+                Action::Tell(news) => {
+                    let (level, text) = told(&news);
+                    self.fleet.tell(level, text);
+                }
+            }
+        }
+    }
+
+    /// Puts something on the network; false if there is no room for it.
+    fn put(&self, key: &str, bytes: &[u8], envelope: Option<&[u8]>) -> bool {
+        match self.session.put(key, bytes, envelope.unwrap_or_default(), envelope.is_none()) {
+            Ok(is_put) => is_put,
+            // It is sent again when somebody lacks it.
+            Err(error) => {
+                self.fleet.tell(Level::Warning, format!("the network did not take `{key}`: {error}"));
+                true
+            }
+        }
+    }
+}
+
+/// What happened to the network, for people.
+fn told(news: &News) -> (Level, String) {
+    match news {
+        News::Joined { name, .. } => (Level::Info, format!("program `{name}` is on the network")),
+        News::Left { name, .. } => (Level::Info, format!("program `{name}` has left the network")),
+        News::Unreachable { name, .. } => (Level::Warning, format!("program `{name}` gives no sign of life")),
+        News::Back { name, .. } => (Level::Info, format!("program `{name}` gives signs of life again")),
+        News::GivenUp { name, .. } => (
+            Level::Warning,
+            format!(
+                "program `{name}` was away for so long that no more events are kept for it: it will have lost some"
+            ),
+        ),
+        News::Unreceived { name, topic, count } => (
+            Level::Error,
+            format!("program `{name}` has not received {count} messages on topic `{topic}`, and this program ends"),
+        ),
+        News::Twice { component, name, .. } => (
+            Level::Error,
+            format!(
+                "component `{component}` runs in program `{name}`, and in another one: the messages of the one that began first are ignored; a component \
+                 runs once in a fleet"
+            ),
+        ),
+        News::Anew { component, name, after, .. } => (
+            Level::Warning,
+            format!("component `{component}` has begun anew in program `{name}`, after {after} messages"),
+        ),
+        News::Differs { name, topic, .. } => (
+            Level::Error,
+            format!(
+                "program `{name}` sends other messages on topic `{topic}` than this one reads: they are ignored; build both programs \
+                 from one version"
+            ),
+        ),
+        News::Lost { name, topic, count, .. } => (
+            Level::Error,
+            format!("{count} messages of program `{name}` on topic `{topic}` are lost: it does not have them any more"),
+        ),
+        News::Overflow { topic, count } => (
+            Level::Error,
+            format!(
+                "{count} messages on topic `{topic}` are lost for programs that did not receive them in time: too many \
+                 waited for them"
+            ),
+        ),
+    }
+}

@@ -1,0 +1,112 @@
+//! What a program says to its exchange, and what the exchange has it do.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::incoming::Arrived;
+
+/// Settings of a program on a network.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The number of this program, which no other one has: another one at each start.
+    pub program: u64,
+    /// Its name for people.
+    pub name: String,
+    /// Time without a sign of life after which others miss it, in nanoseconds.
+    pub patience: u64,
+    /// Bytes of events that are kept for other programs, at most.
+    pub limit: usize,
+    /// The components of this program that are on the network: their paths.
+    pub components: BTreeSet<String>,
+}
+
+/// Where something is put for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// All programs that read a topic, of which this component sent a message.
+    Topic(Arc<str>, Arc<str>),
+    /// A message of a topic that this program asked for again.
+    Again(u64, Arc<str>),
+    /// All programs: an [`Alive`](super::wire::Alive) of this one.
+    Alive(u64),
+    /// A program: an [`Again`](super::wire::Again).
+    Ask(u64),
+    /// A program: a [`Covered`](super::wire::Covered).
+    Covered(u64),
+}
+
+/// What the program has to do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Put something on the network.
+    Put {
+        /// For whom.
+        to: Destination,
+        /// The message.
+        bytes: Arc<[u8]>,
+        /// The [`Envelope`](super::wire::Envelope) of a message of a component.
+        envelope: Option<Arc<[u8]>>,
+    },
+    /// Deliver a message to the readers of its topic.
+    Deliver {
+        /// The program that sent it.
+        program: u64,
+        /// The topic.
+        topic: Arc<str>,
+        /// The message.
+        arrived: Arrived,
+    },
+    /// Tell what happened.
+    Tell(News),
+}
+
+/// Something that happened to the network.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "each field is named in the doc of its variant")]
+pub enum News {
+    /// A program of this name is there.
+    Joined { program: u64, name: Arc<str> },
+    /// It ended.
+    Left { program: u64, name: Arc<str> },
+    /// It gives no sign of life.
+    Unreachable { program: u64, name: Arc<str> },
+    /// It gives signs of life again.
+    Back { program: u64, name: Arc<str> },
+    /// It was away for so long that nothing is kept for it any more.
+    GivenUp { program: u64, name: Arc<str> },
+    /// So many events of a topic did not arrive from it, and cannot be sent again.
+    Lost { program: u64, name: Arc<str>, topic: Arc<str>, count: u64 },
+    /// So many events of this program, which ends, were not received by another one.
+    Unreceived { name: Arc<str>, topic: Arc<str>, count: u64 },
+    /// A component runs in two programs, of which one may be this one: its messages from this program are ignored.
+    Twice { component: Arc<str>, program: u64, name: Arc<str> },
+    /// A component begins anew in another program; so many of its messages came from the one before.
+    Anew { component: Arc<str>, program: u64, name: Arc<str>, after: u64 },
+    /// A program sends messages of another schema on a topic, which are ignored.
+    Differs { program: u64, name: Arc<str>, topic: Arc<str> },
+    /// So many events of this program on a topic were forgotten before all had received them.
+    Overflow { topic: Arc<str>, count: u64 },
+}
+
+/// A message of a component of this program.
+#[derive(Clone, Debug)]
+pub struct OwnMessage<'a> {
+    /// The topic.
+    pub topic: &'a Arc<str>,
+    /// True for a state topic.
+    pub is_state: bool,
+    /// The component: its path.
+    pub component: &'a Arc<str>,
+    /// The component that it is for; `None`: all readers.
+    pub to: Option<&'a str>,
+    /// The key of a message of a state topic.
+    pub key: Option<u64>,
+    /// Wall clock, in nanoseconds since 1970.
+    pub sent: u64,
+    /// The hash of the schema.
+    pub schema: u64,
+    /// The record of the journal with the reason; 0 is none.
+    pub cause: u64,
+    /// The message.
+    pub bytes: Vec<u8>,
+}

@@ -1,0 +1,186 @@
+//! Signs of life: what a program says of what it has sent and received, and what others say.
+
+use std::sync::Arc;
+
+use super::action::{Action, News};
+use super::outgoing::Outgoing;
+use super::peer::{Peer, Reading};
+use super::wire::{Alive, LARGEST_NUMBER, Reads, Received, Sends, Vote, Welcome};
+use super::{Exchange, MILLISECOND, note_missing};
+
+/// Programs that are known at once, and topics of one of them, at most: more is no fleet.
+const MOST_PROGRAMS: usize = 4_096;
+const MOST_TOPICS: usize = 4_096;
+/// Longest time without a sign of life that a program asks for, in milliseconds: three periods of a day.
+const LONGEST_PATIENCE: u64 = 3 * 24 * 3_600_000;
+
+impl Exchange {
+    /// A sign of life of another program arrived.
+    pub fn hear(&mut self, alive: &Alive, now: u64) {
+        let program = alive.program;
+        if program == self.settings.program || self.left.contains(&program) {
+            return;
+        }
+        if !is_sane(alive) {
+            return;
+        }
+        self.pass(now);
+        let is_known = self.peers.contains_key(&program);
+        if !is_known {
+            if alive.leaves || self.peers.len() >= MOST_PROGRAMS {
+                return;
+            }
+            let name = Arc::from(alive.name.as_str());
+            self.actions.push(Action::Tell(News::Joined { program, name }));
+            self.say_soon();
+        }
+        let peer = self.peers.entry(program).or_insert_with(|| Peer::new(&alive.name));
+        if alive.number <= peer.sign {
+            return;
+        }
+        peer.vote = Vote::of(alive.vote);
+        (peer.sign, peer.heard, peer.patience) = (alive.number, now, alive.patience.saturating_mul(MILLISECOND));
+        if std::mem::take(&mut peer.is_given_up) {
+            for (topic, reading) in &mut peer.reading {
+                let oldest = self.outgoing.get(topic).map_or(1, Outgoing::oldest);
+                reading.next = reading.next.max(oldest);
+            }
+        }
+        if !std::mem::replace(&mut peer.is_reachable, true) {
+            let name = Arc::clone(&peer.name);
+            self.actions.push(Action::Tell(News::Back { program, name }));
+        }
+        self.note_twice(program);
+        self.hear_reader(alive);
+        self.hear_sender(alive, now);
+        if alive.leaves {
+            self.remove(program);
+        }
+    }
+
+    /// What another program says as a reader of this one.
+    fn hear_reader(&mut self, alive: &Alive) {
+        let Some(peer) = self.peers.get_mut(&alive.program) else { return };
+        let mut is_new = false;
+        for reading in peer.reading.values_mut() {
+            reading.is_welcomed = false;
+        }
+        for Reads { topic } in &alive.reads {
+            if !peer.reading.contains_key(topic.as_str()) {
+                let outgoing = self.outgoing.get(topic.as_str());
+                let first = outgoing.filter(|outgoing| !outgoing.is_state()).map_or(1, |outgoing| outgoing.last + 1);
+                let reading = Reading { next: first, is_welcomed: false };
+                peer.reading.insert(Arc::from(topic.as_str()), reading);
+                is_new = true;
+            }
+        }
+        let own = alive.received.iter().filter(|received| received.program == self.settings.program);
+        for Received { topic, next, .. } in own {
+            if let Some(reading) = peer.reading.get_mut(topic.as_str()) {
+                reading.is_welcomed = true;
+                reading.next = reading.next.max(*next);
+            }
+        }
+        if is_new {
+            self.say_soon();
+        }
+        self.forget_received();
+    }
+
+    /// What another program says as a sender.
+    fn hear_sender(&mut self, alive: &Alive, now: u64) {
+        let program = alive.program;
+        let mut ready = Vec::new();
+        let Some(peer) = self.peers.get_mut(&program) else { return };
+        for Sends { topic, last, oldest, schema, .. } in &alive.sends {
+            let Some((topic, own)) = self.reads.get_key_value(topic.as_str()) else { continue };
+            if own.schema != *schema && peer.differing.insert(Arc::clone(topic)) {
+                let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
+                self.actions.push(Action::Tell(News::Differs { program, name, topic }));
+            }
+            let incoming = peer.incoming.entry(Arc::clone(topic)).or_default();
+            incoming.last = incoming.last.max(*last);
+            let (count, late) = incoming.skip_to(*oldest);
+            if count > 0 {
+                let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
+                self.actions.push(Action::Tell(News::Lost { program, name, topic, count }));
+            }
+            ready.push((Arc::clone(topic), late));
+        }
+        for Welcome { topic, first, .. } in alive.welcomes.iter().filter(|one| one.reader == self.settings.program) {
+            let Some((topic, _)) = self.reads.get_key_value(topic.as_str()) else { continue };
+            let incoming = peer.incoming.entry(Arc::clone(topic)).or_default();
+            self.has_news |= incoming.next == 0;
+            ready.push((Arc::clone(topic), incoming.welcome(*first)));
+        }
+        for incoming in peer.incoming.values_mut() {
+            note_missing(incoming, now);
+        }
+        for (topic, ready) in ready {
+            self.deliver(program, &topic, ready);
+        }
+    }
+
+    pub(super) fn sign_of_life(&mut self, leaves: bool) -> Alive {
+        self.sign += 1;
+        let sends = self.outgoing.iter().map(|(topic, outgoing)| Sends {
+            topic: topic.to_string(),
+            is_state: outgoing.is_state(),
+            schema: outgoing.schema,
+            last: outgoing.last,
+            oldest: outgoing.oldest(),
+        });
+        let received = self.peers.iter().flat_map(|(program, peer)| {
+            let known = peer.incoming.iter().filter(|(_, incoming)| incoming.next != 0);
+            known.map(|(topic, incoming)| Received { program: *program, topic: topic.to_string(), next: incoming.next })
+        });
+        let welcomes = self.peers.iter().flat_map(|(reader, peer)| {
+            let new = peer.reading.iter().filter(|(_, reading)| !reading.is_welcomed);
+            new.map(|(topic, reading)| Welcome { reader: *reader, topic: topic.to_string(), first: reading.next })
+        });
+        Alive {
+            program: self.settings.program,
+            name: self.settings.name.clone(),
+            number: self.sign,
+            patience: self.settings.patience / MILLISECOND,
+            sends: sends.collect(),
+            reads: self.reads.keys().map(|topic| Reads { topic: topic.to_string() }).collect(),
+            received: received.collect(),
+            welcomes: welcomes.collect(),
+            vote: self.vote as u8,
+            leaves,
+        }
+    }
+
+    fn remove(&mut self, program: u64) {
+        if self.left.len() >= MOST_PROGRAMS {
+            self.left.pop_first();
+        }
+        self.left.insert(program);
+        if let Some(peer) = self.peers.remove(&program) {
+            self.was_done |= peer.vote == Vote::Done;
+            for (topic, incoming) in &peer.incoming {
+                if let Some(count) =
+                    incoming.lacks().filter(|_| self.reads.get(topic).is_some_and(|topic| !topic.is_state))
+                {
+                    let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
+                    self.actions.push(Action::Tell(News::Lost { program, name, topic, count }));
+                }
+            }
+            self.actions.push(Action::Tell(News::Left { program, name: peer.name }));
+            self.forget_received();
+        }
+    }
+}
+
+/// True if a sign of life is one that a program of a fleet says: who says others cannot make this one count beyond its
+/// numbers, or keep more than it has room for.
+fn is_sane(alive: &Alive) -> bool {
+    let sends = alive.sends.iter().flat_map(|sends| [sends.last, sends.oldest]);
+    let welcomes = alive.welcomes.iter().map(|welcome| welcome.first);
+    let received = alive.received.iter().map(|received| received.next);
+    alive.patience <= LONGEST_PATIENCE
+        && alive.reads.len() <= MOST_TOPICS
+        && alive.sends.len() <= MOST_TOPICS
+        && sends.chain(welcomes).chain(received).all(|number| number <= LARGEST_NUMBER)
+}

@@ -1,0 +1,450 @@
+//! The exchange of messages between the programs of a network, as a state machine without clock, thread and network.
+//!
+//! Each program numbers its messages on each topic, keeps them until all programs that read the topic have received
+//! them, and sends them again to who asks. A sign of life, now and then, says how far it has sent and received. So a
+//! transport may lose, repeat and reorder what it carries, in both directions.
+//!
+//! - A reader receives the events of a topic from the moment on in which their sender has heard of it: the sender says
+//!   where it begins (*welcome*). It receives them once, and in the order of their sending.
+//! - Of a state topic a reader receives the newest message of each component and key, at first all that there are.
+//! - What is kept is bounded. Beyond the bound, programs that are away are given up first; then events are lost, and
+//!   both ends say so.
+
+mod action;
+mod hear;
+mod incoming;
+mod outgoing;
+mod peer;
+#[cfg(test)]
+mod tests;
+pub mod wire;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
+
+use saoms_api::host::cdr;
+
+pub use self::action::{Action, Destination, News, OwnMessage, Settings};
+pub use self::incoming::Arrived;
+use self::incoming::Incoming;
+pub use self::outgoing::Sent;
+use self::outgoing::{Kept, Outgoing};
+use self::peer::Peer;
+use self::wire::{Again, Alive, Covered, Envelope, LARGEST_NUMBER, Vote};
+
+/// Nanoseconds of a millisecond.
+const MILLISECOND: u64 = 1_000_000;
+/// Time between two signs of life while there is something to say.
+const BUSY_INTERVAL: u64 = 100 * MILLISECOND;
+/// Time for which a message may be late before it is asked for.
+const LATENESS: u64 = 20 * MILLISECOND;
+/// Longest time between two requests for the same messages.
+const LONGEST_WAIT: u64 = 1_000 * MILLISECOND;
+/// Messages that are sent again for one request, at most.
+const MOST_AGAIN: usize = 1_024;
+/// Bytes that are sent again for one request, at most, beside the last message.
+const MOST_AGAIN_BYTES: usize = 1 << 20;
+
+/// A topic that components of this program read.
+#[derive(Clone, Copy, Debug)]
+struct OwnTopic {
+    is_state: bool,
+    schema: u64,
+}
+
+/// The program that a component of another one runs in.
+#[derive(Clone, Copy, Debug)]
+struct Owner {
+    program: u64,
+    delivered: u64,
+    /// The program that it ran in before, and when that was over.
+    before: Option<(u64, u64)>,
+    /// True if it was told that the component runs in another program, too.
+    is_told: bool,
+}
+
+/// One program on a network.
+#[derive(Debug)]
+pub struct Exchange {
+    settings: Settings,
+    outgoing: BTreeMap<Arc<str>, Outgoing>,
+    /// The topics that components of this program read.
+    reads: BTreeMap<Arc<str>, OwnTopic>,
+    peers: BTreeMap<u64, Peer>,
+    /// Programs that have left: what of them is still on its way is of no use.
+    left: BTreeSet<u64>,
+    /// The program that each component runs in, and how many of its messages were delivered.
+    owners: HashMap<String, Owner>,
+    /// Whether this program sees work left.
+    vote: Vote,
+    /// True if a program that has left had seen that all work is done.
+    was_done: bool,
+    /// The present time, and the time at which the exchange began.
+    now: u64,
+    begun: u64,
+    /// The number of the last sign of life.
+    sign: u64,
+    /// When the next sign of life is due.
+    sign_at: u64,
+    /// True if there is something to say since the last sign of life.
+    has_news: bool,
+    actions: Vec<Action>,
+}
+
+impl Exchange {
+    /// A program that joins a network.
+    pub fn new(settings: Settings) -> Exchange {
+        Exchange {
+            settings,
+            outgoing: BTreeMap::new(),
+            reads: BTreeMap::new(),
+            peers: BTreeMap::new(),
+            left: BTreeSet::new(),
+            owners: HashMap::new(),
+            vote: Vote::default(),
+            was_done: false,
+            now: 0,
+            begun: 0,
+            sign: 0,
+            sign_at: 0,
+            has_news: true,
+            actions: Vec::new(),
+        }
+    }
+
+    /// What the program has to do, in this order.
+    pub fn take_actions(&mut self) -> Vec<Action> {
+        std::mem::take(&mut self.actions)
+    }
+
+    /// Components of this program read a topic from now on.
+    pub fn read(&mut self, topic: &Arc<str>, is_state: bool, schema: u64) {
+        if self.reads.insert(Arc::clone(topic), OwnTopic { is_state, schema }).is_none() {
+            self.say_soon();
+        }
+    }
+
+    /// A component sends a message.
+    pub fn send(&mut self, message: OwnMessage<'_>) {
+        let OwnMessage { topic, is_state, component, to, key, sent, schema, cause, bytes } = message;
+        if !self.outgoing.contains_key(topic) {
+            self.outgoing.insert(Arc::clone(topic), Outgoing::new(is_state, schema));
+            // Readers that were heard before read it from its first message on.
+            self.say_soon();
+        }
+        let Some(outgoing) = self.outgoing.get_mut(topic) else { return };
+        let number = outgoing.last + 1;
+        let envelope = Envelope {
+            program: self.settings.program,
+            number,
+            component: component.to_string(),
+            to: to.unwrap_or_default().to_owned(),
+            key: key.unwrap_or_default(),
+            has_key: key.is_some(),
+            sent,
+            schema,
+            cause,
+        };
+        let (bytes, envelope) = (Arc::<[u8]>::from(bytes), Arc::<[u8]>::from(cdr::encode(&envelope)));
+        let to = Destination::Topic(Arc::clone(topic), Arc::clone(component));
+        self.actions.push(Action::Put { to, bytes: Arc::clone(&bytes), envelope: Some(Arc::clone(&envelope)) });
+        outgoing.keep(Sent { number, bytes, envelope }, (Arc::clone(component), key));
+        if !is_state && self.peers.values().all(|peer| peer.needs(topic).is_none()) {
+            outgoing.forget_before(number + 1);
+        }
+        self.has_news = true;
+        self.keep_within_limit();
+    }
+
+    /// A message of a component of another program arrived.
+    pub fn receive(&mut self, topic: &str, bytes: &[u8], envelope: &[u8], now: u64) {
+        let Ok(envelope) = cdr::decode::<Envelope>(envelope) else { return };
+        let Some((topic, is_state)) = self.reads.get_key_value(topic) else { return };
+        let (topic, is_state) = (Arc::clone(topic), is_state.is_state);
+        self.pass(now);
+        // One that was never heard is heard soon, and its messages are sent again.
+        let Some(peer) = self.peers.get_mut(&envelope.program) else { return };
+        let Envelope { program, number, component, to, key, has_key, sent, .. } = envelope;
+        if number > LARGEST_NUMBER {
+            return;
+        }
+        let arrived = Arrived { component, to, key: has_key.then_some(key), sent, bytes: bytes.to_owned() };
+        let incoming = peer.incoming.entry(Arc::clone(&topic)).or_default();
+        let ready = match is_state {
+            true => incoming.take_state(number, arrived).into_iter().collect(),
+            false => incoming.take_event(number, arrived),
+        };
+        note_missing(incoming, now);
+        self.has_news = true;
+        self.deliver(program, &topic, ready);
+    }
+
+    /// Another program asks for messages again.
+    pub fn answer(&mut self, again: &Again) {
+        let Some((topic, outgoing)) = self.outgoing.get_key_value(again.topic.as_str()) else { return };
+        let (mut size, mut last) = (0, again.last);
+        let mut numbers = Vec::new();
+        for sent in outgoing.between(again.first, again.last) {
+            if numbers.len() == MOST_AGAIN || size > MOST_AGAIN_BYTES {
+                last = sent.number - 1;
+                break;
+            }
+            numbers.push(sent.number);
+            size += sent.bytes.len() + sent.envelope.len();
+            let to = Destination::Again(again.reader, Arc::clone(topic));
+            let (bytes, envelope) = (Arc::clone(&sent.bytes), Some(Arc::clone(&sent.envelope)));
+            self.actions.push(Action::Put { to, bytes, envelope });
+        }
+        if outgoing.is_state() {
+            let (program, last) = (self.settings.program, last.min(outgoing.last));
+            let covered = Covered { program, topic: topic.to_string(), first: again.first, last, numbers };
+            let to = Destination::Covered(again.reader);
+            self.actions.push(Action::Put { to, bytes: cdr::encode(&covered).into(), envelope: None });
+        }
+    }
+
+    /// Another program says which messages of a state topic are outdated.
+    pub fn cover(&mut self, covered: &Covered, now: u64) {
+        let peer = self.peers.get_mut(&covered.program);
+        let Some(incoming) = peer.and_then(|peer| peer.incoming.get_mut(covered.topic.as_str())) else { return };
+        incoming.skip_outdated(covered);
+        note_missing(incoming, now);
+    }
+
+    /// Does what is due. Gives the time at which something is due next.
+    pub fn tick(&mut self, now: u64) -> u64 {
+        self.pass(now);
+        self.miss(now);
+        let mut next = self.ask(now);
+        if now >= self.sign_at {
+            let alive = self.sign_of_life(false);
+            self.put_alive(&alive);
+            let quiet = self.settings.patience / 4;
+            let is_busy = std::mem::take(&mut self.has_news) || !self.is_complete();
+            self.sign_at = now + if is_busy { quiet.min(BUSY_INTERVAL) } else { quiet };
+        }
+        next = next.min(self.sign_at);
+        next
+    }
+
+    /// True if all other programs have received all events of this one, but for those that were missed for long.
+    pub fn is_complete(&self) -> bool {
+        self.lacking().all(|(peer, ..)| !peer.is_awaited(self.now))
+    }
+
+    /// The programs that lack events of this one, with the topic and the number of these.
+    fn lacking(&self) -> impl Iterator<Item = (&Peer, &Arc<str>, u64)> {
+        let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
+        events.flat_map(|(topic, outgoing)| {
+            let needed = move |peer: &Peer| peer.needs(topic).filter(|next| *next <= outgoing.last);
+            self.peers.values().filter_map(move |peer| Some((peer, topic, outgoing.last + 1 - needed(peer)?)))
+        })
+    }
+
+    /// Says whether the program sees work left.
+    pub fn vote(&mut self, vote: Vote) {
+        if std::mem::replace(&mut self.vote, vote) != vote {
+            self.say_soon();
+        }
+    }
+
+    /// True if some program has seen that all work is done, and no program that is there sees work left.
+    pub fn is_done(&self) -> bool {
+        let there = self.peers.values().filter(|peer| peer.is_reachable).map(|peer| peer.vote);
+        let mut is_done = self.was_done;
+        for vote in there.chain([self.vote]) {
+            match vote {
+                Vote::Silent => {}
+                Vote::Open => return false,
+                Vote::Done => is_done = true,
+            }
+        }
+        is_done
+    }
+
+    /// The program leaves the network.
+    pub fn leave(&mut self) {
+        let unreceived = self.lacking().map(|(peer, topic, count)| {
+            let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
+            Action::Tell(News::Unreceived { name, topic, count })
+        });
+        let unreceived: Vec<Action> = unreceived.collect();
+        self.actions.extend(unreceived);
+        let alive = self.sign_of_life(true);
+        self.put_alive(&alive);
+    }
+
+    /// Bytes of messages that are kept for other programs.
+    pub fn kept_bytes(&self) -> usize {
+        self.outgoing.values().map(|outgoing| outgoing.size).sum()
+    }
+
+    /// Notes the present time.
+    fn pass(&mut self, now: u64) {
+        if self.now == 0 {
+            self.begun = now;
+        }
+        self.now = self.now.max(now);
+    }
+
+    fn say_soon(&mut self) {
+        (self.has_news, self.sign_at) = (true, 0);
+    }
+
+    /// Delivers messages that are for the fleet; a sender keeps nothing for those that are not.
+    fn deliver(&mut self, program: u64, topic: &Arc<str>, ready: Vec<Arrived>) {
+        for arrived in ready {
+            let differs = self.peers.get(&program).is_some_and(|peer| peer.differing.contains(topic));
+            if !differs && self.is_of(program, &arrived.component) {
+                self.actions.push(Action::Deliver { program, topic: Arc::clone(topic), arrived });
+            }
+        }
+    }
+
+    /// True if the messages of a component count that come from this program: the one in which it began last. A program
+    /// that was killed and begins anew is heard before the old one is missed.
+    fn is_of(&mut self, program: u64, component: &str) -> bool {
+        let now = self.now;
+        if self.settings.components.contains(component) {
+            // Messages of an earlier start of this program may be on their way.
+            if now > self.begun + self.settings.patience {
+                self.tell_twice(program, component);
+            }
+            return false;
+        }
+        let Some(owner) = self.owners.get_mut(component) else {
+            self.owners.insert(component.to_owned(), Owner { program, delivered: 1, before: None, is_told: false });
+            return true;
+        };
+        if owner.program == program {
+            owner.delivered += 1;
+            return true;
+        }
+        if owner.before.is_some_and(|(before, _)| before == program) {
+            return false;
+        }
+        let (before, after) = (owner.program, owner.delivered);
+        *owner = Owner { program, delivered: 1, before: Some((before, now)), is_told: false };
+        let name = self.name_of(program);
+        self.actions.push(Action::Tell(News::Anew { component: component.into(), program, name, after }));
+        true
+    }
+
+    /// A program is there: components of it that have begun anew elsewhere, some time ago, run twice.
+    fn note_twice(&mut self, program: u64) {
+        let (now, patience) = (self.now, self.settings.patience);
+        let is_twice =
+            |owner: &Owner| owner.before.is_some_and(|(before, at)| before == program && now > at + patience);
+        let twice = self.owners.iter().filter(|(_, owner)| is_twice(owner) && !owner.is_told);
+        let twice: Vec<String> = twice.map(|(component, _)| component.clone()).collect();
+        twice.iter().for_each(|component| self.tell_twice(program, component));
+    }
+
+    /// Tells once that a component runs in this program, too.
+    fn tell_twice(&mut self, program: u64, component: &str) {
+        let fresh = || Owner { program, delivered: 0, before: None, is_told: false };
+        let owner = self.owners.entry(component.to_owned()).or_insert_with(fresh);
+        if !std::mem::replace(&mut owner.is_told, true) {
+            let name = self.name_of(program);
+            self.actions.push(Action::Tell(News::Twice { component: component.into(), program, name }));
+        }
+    }
+
+    fn name_of(&self, program: u64) -> Arc<str> {
+        self.peers.get(&program).map_or_else(|| "".into(), |peer| Arc::clone(&peer.name))
+    }
+
+    /// Programs that give no sign of life are missed.
+    fn miss(&mut self, now: u64) {
+        for (program, peer) in &mut self.peers {
+            if peer.is_reachable && now.saturating_sub(peer.heard) > peer.patience {
+                peer.is_reachable = false;
+                let news = News::Unreachable { program: *program, name: Arc::clone(&peer.name) };
+                self.actions.push(Action::Tell(news));
+            }
+        }
+    }
+
+    /// Asks for what is missing. Gives the time at which that is due next.
+    fn ask(&mut self, now: u64) -> u64 {
+        let mut next = u64::MAX;
+        for (program, peer) in self.peers.iter_mut().filter(|(_, peer)| peer.is_reachable) {
+            for (topic, incoming) in &mut peer.incoming {
+                let Some(at) = incoming.ask_at else { continue };
+                if at > now {
+                    next = next.min(at);
+                    continue;
+                }
+                let Some((first, last)) = incoming.missing() else {
+                    incoming.ask_at = None;
+                    continue;
+                };
+                // A part at a time: who is asked for all again and again has no time for what is new.
+                let last = last.min(first + MOST_AGAIN as u64 - 1);
+                incoming.asked_up_to = last;
+                let again = Again { reader: self.settings.program, topic: topic.to_string(), first, last };
+                let (to, bytes) = (Destination::Ask(*program), cdr::encode(&again).into());
+                self.actions.push(Action::Put { to, bytes, envelope: None });
+                let wait = ((2 * LATENESS) << incoming.asked.min(10)).min(LONGEST_WAIT);
+                incoming.asked += 1;
+                incoming.ask_at = Some(now + wait);
+                next = next.min(now + wait);
+            }
+        }
+        next
+    }
+
+    fn put_alive(&mut self, alive: &Alive) {
+        let bytes = cdr::encode(alive).into();
+        self.actions.push(Action::Put { to: Destination::Alive(self.settings.program), bytes, envelope: None });
+    }
+
+    /// Forgets events that all readers have received.
+    fn forget_received(&mut self) {
+        for (topic, outgoing) in &mut self.outgoing {
+            let needed = self.peers.values().filter_map(|peer| peer.needs(topic)).min();
+            outgoing.forget_before(needed.unwrap_or(outgoing.last + 1));
+        }
+    }
+
+    /// Gives up programs that are away, and then events, when too much is kept.
+    fn keep_within_limit(&mut self) {
+        let events = |outgoing: &&mut Outgoing| matches!(outgoing.kept, Kept::Events(_));
+        loop {
+            let size: usize = self.outgoing.values().filter(|one| !one.is_state()).map(|outgoing| outgoing.size).sum();
+            if size <= self.settings.limit {
+                return;
+            }
+            let away = self.peers.iter_mut().filter(|(_, peer)| !peer.is_reachable && !peer.is_given_up);
+            if let Some((program, peer)) = away.min_by_key(|(_, peer)| peer.heard) {
+                peer.is_given_up = true;
+                let news = News::GivenUp { program: *program, name: Arc::clone(&peer.name) };
+                self.actions.push(Action::Tell(news));
+                self.forget_received();
+                continue;
+            }
+            let all = self.outgoing.iter_mut().filter(|(_, outgoing)| events(outgoing));
+            let Some((topic, outgoing)) = all.max_by_key(|(_, outgoing)| outgoing.size) else { return };
+            let count = outgoing.forget_before(outgoing.oldest() + 1);
+            self.actions.push(Action::Tell(News::Overflow { topic: Arc::clone(topic), count }));
+            if count == 0 {
+                return;
+            }
+        }
+    }
+}
+
+/// Asks soon for what is missing. While what was asked for arrives, it is waited for; then the next part is asked for.
+fn note_missing(incoming: &mut Incoming, now: u64) {
+    let before = std::mem::replace(&mut incoming.seen, incoming.next);
+    if incoming.missing().is_none() {
+        incoming.ask_at = None;
+    } else if incoming.ask_at.is_none() {
+        (incoming.asked, incoming.asked_up_to) = (0, 0);
+        incoming.ask_at = Some(now + LATENESS);
+    } else if incoming.next > before && incoming.asked_up_to > 0 {
+        incoming.asked = 0;
+        let is_over = incoming.next > incoming.asked_up_to;
+        incoming.ask_at = Some(if is_over { now } else { now + 2 * LATENESS });
+    }
+}

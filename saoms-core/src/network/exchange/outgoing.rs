@@ -1,0 +1,108 @@
+//! The messages of this program on one topic, as long as another program may lack them.
+
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::sync::Arc;
+
+/// A message that was sent, in its byte forms.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sent {
+    /// Its number on its topic.
+    pub number: u64,
+    /// The message.
+    pub bytes: Arc<[u8]>,
+    /// The [`Envelope`](super::wire::Envelope).
+    pub envelope: Arc<[u8]>,
+}
+
+impl Sent {
+    fn size(&self) -> usize {
+        // The numbers and the memory around them count, too: small messages are the usual ones.
+        self.bytes.len() + self.envelope.len() + 96
+    }
+}
+
+/// Key of a message of a state topic: its component, and its own key.
+pub(super) type StateKey = (Arc<str>, Option<u64>);
+
+/// What is kept to be sent again.
+#[derive(Debug)]
+pub(super) enum Kept {
+    /// Of an event topic: all that a reader may lack.
+    Events(VecDeque<Sent>),
+    /// Of a state topic: the newest of each key, by number.
+    States { newest: BTreeMap<u64, Sent>, numbers: HashMap<StateKey, u64> },
+}
+
+/// The outgoing messages of a topic.
+#[derive(Debug)]
+pub(super) struct Outgoing {
+    /// The number of the last message.
+    pub(super) last: u64,
+    /// The hash of the schema of the messages.
+    pub(super) schema: u64,
+    pub(super) kept: Kept,
+    /// The size of what is kept, in bytes.
+    pub(super) size: usize,
+}
+
+impl Outgoing {
+    pub(super) fn new(is_state: bool, schema: u64) -> Outgoing {
+        let kept = match is_state {
+            true => Kept::States { newest: BTreeMap::new(), numbers: HashMap::new() },
+            false => Kept::Events(VecDeque::new()),
+        };
+        Outgoing { last: 0, schema, kept, size: 0 }
+    }
+
+    pub(super) fn is_state(&self) -> bool {
+        matches!(self.kept, Kept::States { .. })
+    }
+
+    /// Keeps a message, whose number is the next one.
+    pub(super) fn keep(&mut self, sent: Sent, key: StateKey) {
+        self.last = sent.number;
+        self.size += sent.size();
+        match &mut self.kept {
+            Kept::Events(events) => events.push_back(sent),
+            Kept::States { newest, numbers } => {
+                if let Some(before) = numbers.insert(key, sent.number).and_then(|number| newest.remove(&number)) {
+                    self.size -= before.size();
+                }
+                newest.insert(sent.number, sent);
+            }
+        }
+    }
+
+    /// The number of the first message that can be sent again.
+    pub(super) fn oldest(&self) -> u64 {
+        match &self.kept {
+            Kept::Events(events) => events.front().map_or(self.last + 1, |sent| sent.number),
+            // What is not there any more is outdated, and nobody lacks it.
+            Kept::States { .. } => 1,
+        }
+    }
+
+    /// Forgets events before this number. Gives how many these were.
+    pub(super) fn forget_before(&mut self, number: u64) -> u64 {
+        let Kept::Events(events) = &mut self.kept else { return 0 };
+        let mut count = 0;
+        while let Some(sent) = events.pop_front_if(|sent| sent.number < number) {
+            self.size -= sent.size();
+            count += 1;
+        }
+        count
+    }
+
+    /// The kept messages of these numbers.
+    pub(super) fn between(&self, first: u64, last: u64) -> Box<dyn Iterator<Item = &Sent> + '_> {
+        match &self.kept {
+            Kept::Events(events) => {
+                let skipped = first.saturating_sub(self.oldest());
+                let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
+                Box::new(events.iter().skip(skipped).take_while(move |sent| sent.number <= last))
+            }
+            Kept::States { .. } if first > last => Box::new(std::iter::empty()),
+            Kept::States { newest, .. } => Box::new(newest.range(first..=last).map(|(_, sent)| sent)),
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! What is known of another program.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::incoming::Incoming;
+use super::wire::Vote;
+
+/// A program is missed for long after so many times its patience.
+const LONG: u64 = 10;
+
+/// Another program of the network.
+#[derive(Debug)]
+pub(super) struct Peer {
+    pub(super) name: Arc<str>,
+    /// The number of its last sign of life.
+    pub(super) sign: u64,
+    /// When it was heard last.
+    pub(super) heard: u64,
+    /// Time after which it is missed, in nanoseconds.
+    pub(super) patience: u64,
+    pub(super) vote: Vote,
+    pub(super) is_reachable: bool,
+    /// True if nothing is kept for it any more: it was away for too long.
+    pub(super) is_given_up: bool,
+    /// Of each topic of this program that it reads, where it begins and what it has received.
+    pub(super) reading: BTreeMap<Arc<str>, Reading>,
+    /// What arrives from it on each topic that this program reads.
+    pub(super) incoming: BTreeMap<Arc<str>, Incoming>,
+    /// The topics whose messages have another schema there.
+    pub(super) differing: BTreeSet<Arc<str>>,
+}
+
+/// The state of a reader of a topic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading {
+    /// The number of the first message that it lacks.
+    pub(super) next: u64,
+    /// True if it knows where it begins.
+    pub(super) is_welcomed: bool,
+}
+
+impl Peer {
+    pub(super) fn new(name: &str) -> Peer {
+        Peer {
+            name: Arc::from(name),
+            sign: 0,
+            heard: 0,
+            patience: 0,
+            vote: Vote::Open,
+            is_reachable: true,
+            is_given_up: false,
+            reading: BTreeMap::new(),
+            incoming: BTreeMap::new(),
+            differing: BTreeSet::new(),
+        }
+    }
+
+    /// True if this program waits for it when it ends: it is there, or has not been missed for long.
+    pub(super) fn is_awaited(&self, now: u64) -> bool {
+        now.saturating_sub(self.heard) <= self.patience.saturating_mul(LONG)
+    }
+
+    /// The number of the first message of a topic that it may ask for; `None` if it asks for none.
+    pub(super) fn needs(&self, topic: &str) -> Option<u64> {
+        self.reading.get(topic).filter(|_| !self.is_given_up).map(|reading| reading.next)
+    }
+}

@@ -1,0 +1,119 @@
+//! Other programs that say what cannot be.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use saoms_api::host::cdr;
+
+use super::lossy::MILLISECOND;
+use crate::network::exchange::wire::{Again, Alive, Covered, Envelope, Reads, Received, Sends, Welcome};
+use crate::network::exchange::{Exchange, OwnMessage, Settings};
+
+/// Numbers at the edges of what there is.
+fn edge() -> impl Strategy<Value = u64> {
+    prop_oneof![Just(0), 1..6_u64, 6..3_000_u64, Just(u64::MAX - 1), Just(u64::MAX)]
+}
+
+fn topic() -> impl Strategy<Value = &'static str> {
+    prop_oneof![Just("EVENTS"), Just("STATES"), Just("OTHER")]
+}
+
+#[derive(Clone, Debug)]
+enum Said {
+    Alive(Alive),
+    Message(&'static str, Envelope),
+    Again(Again),
+    Covered(Covered),
+    Own(bool),
+    Tick(u64),
+}
+
+fn said() -> impl Strategy<Value = Said> {
+    let numbers = || prop::collection::vec(edge(), 9);
+    let alive =
+        (0..4_u64, numbers(), topic(), any::<[bool; 2]>()).prop_map(|(program, number, topic, [is_state, leaves])| {
+            let topic = topic.to_owned();
+            Said::Alive(Alive {
+                program,
+                name: "stranger".to_owned(),
+                number: number[0],
+                patience: number[1],
+                sends: vec![Sends {
+                    topic: topic.clone(),
+                    is_state,
+                    schema: number[1] % 2,
+                    last: number[2],
+                    oldest: number[3],
+                }],
+                reads: vec![Reads { topic: topic.clone() }],
+                received: vec![Received { program: number[4] % 4, topic: topic.clone(), next: number[5] }],
+                welcomes: vec![Welcome { reader: number[6] % 4, topic, first: number[7] }],
+                vote: number[8] as u8,
+                leaves: leaves && number[8] > 2,
+            })
+        });
+    let message = (0..4_u64, edge(), topic(), any::<bool>()).prop_map(|(program, number, topic, has_key)| {
+        let (component, to) = ("Stranger".to_owned(), String::new());
+        Said::Message(topic, Envelope { program, number, component, to, key: 1, has_key, sent: 0, schema: 0, cause: 0 })
+    });
+    let again = (numbers(), topic()).prop_map(|(number, topic)| Again {
+        reader: 1,
+        topic: topic.to_owned(),
+        first: number[0],
+        last: number[1],
+    });
+    let covered = (0..4_u64, numbers(), topic()).prop_map(|(program, number, topic)| {
+        let (topic, first, last) = (topic.to_owned(), number[0], number[1]);
+        Said::Covered(Covered { program, topic, first, last, numbers: number })
+    });
+    prop_oneof![
+        3 => alive,
+        3 => message,
+        1 => again.prop_map(Said::Again),
+        1 => covered,
+        1 => any::<bool>().prop_map(Said::Own),
+        1 => (0..3_000_u64).prop_map(Said::Tick),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn nothing_that_is_said_ends_a_program(all in prop::collection::vec(said(), 1..60)) {
+        let mut exchange = Exchange::new(Settings {
+            program: 0,
+            name: "own".to_owned(),
+            patience: 1_000 * MILLISECOND,
+            limit: 8 << 10,
+            components: BTreeSet::from(["Own".to_owned()]),
+        });
+        exchange.read(&Arc::from("EVENTS"), false, 0);
+        exchange.read(&Arc::from("STATES"), true, 0);
+        let mut now = 0;
+        for said in all {
+            match said {
+                Said::Alive(alive) => exchange.hear(&alive, now),
+                Said::Message(topic, envelope) => exchange.receive(topic, b"message", &cdr::encode(&envelope), now),
+                Said::Again(again) => exchange.answer(&again),
+                Said::Covered(covered) => exchange.cover(&covered, now),
+                Said::Own(is_state) => exchange.send(OwnMessage {
+                    topic: &Arc::from(if is_state { "STATES" } else { "EVENTS" }),
+                    is_state,
+                    component: &Arc::from("Own"),
+                    to: None,
+                    key: None,
+                    sent: 0,
+                    schema: 0,
+                    cause: 0,
+                    bytes: vec![0; 1_000],
+                }),
+                Said::Tick(milliseconds) => {
+                    now += milliseconds * MILLISECOND;
+                    exchange.tick(now);
+                }
+            }
+            prop_assert!(exchange.take_actions().len() < 4_096);
+        }
+        exchange.leave();
+    }
+}

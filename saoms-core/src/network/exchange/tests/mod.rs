@@ -1,0 +1,190 @@
+//! Programs on a network that loses, repeats and delays what it carries.
+
+mod hostile;
+mod lossy;
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+
+use self::lossy::{Lossy, MILLISECOND, Weather};
+
+/// The numbers that each program has received from each other one.
+type Heard = BTreeMap<(usize, usize), Vec<u64>>;
+
+fn events(network: &Lossy, topic: &str) -> Heard {
+    let mut heard = Heard::new();
+    for one in network.delivered.iter().filter(|one| &*one.topic == topic) {
+        heard.entry((one.sender, one.reader)).or_default().push(one.number);
+    }
+    heard
+}
+
+fn assert_in_order(heard: &Heard) {
+    for ((sender, reader), numbers) in heard {
+        for pair in numbers.windows(2) {
+            assert_eq!(pair[1], pair[0] + 1, "{reader} heard {numbers:?} of {sender}");
+        }
+    }
+}
+
+#[test]
+fn events_arrive_once_and_in_order() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    for _ in 0..1000 {
+        network.send(0, "EVENTS");
+        network.run(MILLISECOND);
+    }
+    network.run(1_000 * MILLISECOND);
+    let heard = events(&network, "EVENTS");
+    assert_eq!(heard[&(0, 1)], (1..=1000).collect::<Vec<u64>>());
+    assert!(network.programs[0].exchange.is_complete());
+    assert_eq!(network.programs[0].exchange.kept_bytes(), 0);
+}
+
+#[test]
+fn what_was_sent_while_the_network_was_away_arrives_when_it_is_back() {
+    let mut network = Lossy::new(3, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    network.is_cut = true;
+    for _ in 0..1000 {
+        network.send(0, "EVENTS");
+        network.run(10 * MILLISECOND);
+    }
+    assert!(network.told(1).iter().any(|line| line == "Unreachable 0"), "{:?}", network.told(1));
+    network.is_cut = false;
+    network.run(3_000 * MILLISECOND);
+    let heard = events(&network, "EVENTS");
+    assert_eq!(heard[&(0, 1)], (1..=1000).collect::<Vec<u64>>());
+    assert_eq!(heard[&(0, 2)], (1..=1000).collect::<Vec<u64>>());
+    assert!(network.told(1).iter().any(|line| line == "Back 0"), "{:?}", network.told(1));
+}
+
+#[test]
+fn who_joins_late_gets_the_newest_state_and_events_from_then_on() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    for _ in 0..20 {
+        network.send(0, "EVENTS");
+        network.put(0, "STATES", 3);
+        network.put(0, "STATES", 4);
+        network.run(10 * MILLISECOND);
+    }
+    network.join();
+    network.run(1_000 * MILLISECOND);
+    network.send(0, "EVENTS");
+    network.run(1_000 * MILLISECOND);
+    assert_eq!(events(&network, "EVENTS")[&(0, 2)], [21]);
+    let states: Vec<(Option<u64>, u64)> = network
+        .delivered
+        .iter()
+        .filter(|one| &*one.topic == "STATES" && one.reader == 2)
+        .map(|one| (one.key, one.number))
+        .collect();
+    assert_eq!(states, [(Some(3), 39), (Some(4), 40)]);
+}
+
+#[test]
+fn beyond_the_limit_programs_that_are_away_are_given_up_first() {
+    let mut network = Lossy::new(3, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    network.programs[2].is_stopped = true;
+    for _ in 0..2000 {
+        network.send(0, "EVENTS");
+        network.run(2 * MILLISECOND);
+    }
+    assert_eq!(events(&network, "EVENTS")[&(0, 1)].len(), 2000);
+    let told = network.told(0);
+    assert!(told.contains(&"GivenUp 2".to_owned()), "{told:?}");
+    assert!(!told.iter().any(|line| line.starts_with("Overflow")), "{told:?}");
+    network.programs[2].is_stopped = false;
+    network.run(1_000 * MILLISECOND);
+    network.send(0, "EVENTS");
+    network.run(2_000 * MILLISECOND);
+    let heard = events(&network, "EVENTS");
+    assert_eq!(heard[&(0, 2)].last(), Some(&2001));
+    let lost: u64 =
+        network.told(2).iter().filter_map(|line| line.strip_prefix("Lost 0 EVENTS ")?.parse::<u64>().ok()).sum();
+    assert_eq!(heard[&(0, 2)].len() as u64 + lost, 2001);
+}
+
+#[test]
+fn events_that_nobody_takes_in_time_are_counted_at_both_ends() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    // All within the patience of the sender.
+    network.is_cut = true;
+    for _ in 0..2000 {
+        network.send(0, "EVENTS");
+    }
+    network.is_cut = false;
+    network.run(3_000 * MILLISECOND);
+    let count = |told: Vec<String>, what: &str| -> u64 {
+        told.iter().filter_map(|line| line.strip_prefix(what)?.parse::<u64>().ok()).sum()
+    };
+    let (sender, reader) = (count(network.told(0), "Overflow EVENTS "), count(network.told(1), "Lost 0 EVENTS "));
+    assert!(sender > 0);
+    assert_eq!(sender, reader);
+    assert_eq!(events(&network, "EVENTS")[&(0, 1)].len() as u64 + reader, 2000);
+}
+
+fn weather() -> impl Strategy<Value = Weather> {
+    (0..40_u32, 0..30_u32, 0..120_u64).prop_map(|(loss, repeats, jitter)| Weather { loss, repeats, jitter })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn nothing_is_lost_doubled_or_reordered(
+        weather in weather(),
+        seed in any::<u64>(),
+        steps in prop::collection::vec((0..4_usize, 0..8_u8, 0..60_u64), 1..200),
+    ) {
+        let mut network = Lossy::new(3, weather, seed);
+        network.run(800 * MILLISECOND);
+        for (program, what, time) in steps {
+            match what {
+                0 if network.programs.len() < 5 => network.join(),
+                1 => network.is_cut = !network.is_cut,
+                2 => network.put(program % 3, "STATES", u64::from(what) % 2),
+                _ => network.send(program % 3, "EVENTS"),
+            }
+            network.run(time * MILLISECOND);
+        }
+        network.is_cut = false;
+        // What is lost again and again takes longer.
+        for round in 0..10 {
+            if round < 2 || (0..3).any(|sender| !network.programs[sender].exchange.is_complete()) {
+                network.run(10_000 * MILLISECOND);
+            }
+        }
+        let heard = events(&network, "EVENTS");
+        assert_in_order(&heard);
+        for sender in 0..3 {
+            let last = network.sent(sender, "EVENTS");
+            for reader in 0..3 {
+                if reader != sender && last > 0 {
+                    let numbers = heard.get(&(sender, reader)).cloned().unwrap_or_default();
+                    prop_assert_eq!(numbers, (1..=last).collect::<Vec<u64>>());
+                }
+            }
+            for reader in 3..network.programs.len() {
+                if let Some(numbers) = heard.get(&(sender, reader)) {
+                    prop_assert_eq!(numbers.last(), Some(&last));
+                }
+            }
+            prop_assert!(network.programs[sender].exchange.is_complete());
+        }
+        for (key, number) in network.newest_states() {
+            for reader in 0..network.programs.len() {
+                let heard = network.delivered.iter().filter(|one| {
+                    &*one.topic == "STATES" && one.reader == reader && (one.sender, one.key) == key
+                });
+                let last = heard.map(|one| one.number).next_back();
+                prop_assert!(reader == key.0 || last == Some(number), "{reader} has {last:?} of {key:?}, not {number}");
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What programs say to each other beside the messages of components.
+
+use saoms_api::Message;
+
+/// The largest number that a program says.
+pub const LARGEST_NUMBER: u64 = 1 << 62;
+
+/// What is said beside each message.
+#[derive(Clone, Debug, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Envelope")]
+pub struct Envelope {
+    /// The program that sends it.
+    pub program: u64,
+    /// The number of the message among those of the program on its topic, from 1.
+    pub number: u64,
+    /// The component that sends it: its path.
+    pub component: String,
+    /// The component that it is for; empty: all readers of the topic.
+    pub to: String,
+    /// The key of a message of a state topic that has one.
+    pub key: u64,
+    /// True if there is a key.
+    pub has_key: bool,
+    /// Wall clock of its sending, in nanoseconds since 1970.
+    pub sent: u64,
+    /// The hash of the schema of the message.
+    pub schema: u64,
+    /// The record of the sender's journal with the reason; 0 is none.
+    pub cause: u64,
+}
+
+/// Sign of life of a program: what it sends, and what it has received of each other one.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Alive")]
+pub struct Alive {
+    /// The program.
+    pub program: u64,
+    /// Its name for people: the node, or the name of its composite.
+    pub name: String,
+    /// The number of this sign, from 1.
+    pub number: u64,
+    /// Time after which a program that says nothing is missed, in milliseconds.
+    pub patience: u64,
+    /// The topics on which it sends.
+    pub sends: Vec<Sends>,
+    /// The topics that its components read.
+    pub reads: Vec<Reads>,
+    /// What it has received.
+    pub received: Vec<Received>,
+    /// What readers receive of it first.
+    pub welcomes: Vec<Welcome>,
+    /// Whether it sees work left: see [`Vote`].
+    pub vote: u8,
+    /// True in the last sign of a program that ends.
+    pub leaves: bool,
+}
+
+/// Whether a program sees work left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Vote {
+    /// None of its components says.
+    #[default]
+    Silent = 0,
+    /// Work is left.
+    Open = 1,
+    /// All work is done.
+    Done = 2,
+}
+
+impl Vote {
+    /// The vote that a sign of life says. One that this program does not know is open.
+    pub fn of(number: u8) -> Vote {
+        match number {
+            0 => Vote::Silent,
+            2 => Vote::Done,
+            _ => Vote::Open,
+        }
+    }
+}
+
+/// A topic on which a program sends.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Sends")]
+pub struct Sends {
+    /// The topic.
+    pub topic: String,
+    /// True for a state topic: a message may be left out where a newer one of its component and key follows.
+    pub is_state: bool,
+    /// The hash of the schema of its messages.
+    pub schema: u64,
+    /// The number of the last message.
+    pub last: u64,
+    /// The number of the first message that can be sent again.
+    pub oldest: u64,
+}
+
+/// A topic that components of a program read.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Reads")]
+pub struct Reads {
+    /// The topic.
+    pub topic: String,
+}
+
+/// All messages of a program on a topic were received before this number.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Received")]
+pub struct Received {
+    /// The program that sent them.
+    pub program: u64,
+    /// The topic.
+    pub topic: String,
+    /// The number of the first message that was not received.
+    pub next: u64,
+}
+
+/// A reader receives the messages of a topic from this number on.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Welcome")]
+pub struct Welcome {
+    /// The program that reads.
+    pub reader: u64,
+    /// The topic.
+    pub topic: String,
+    /// The number of the first message for it.
+    pub first: u64,
+}
+
+/// A request to send messages again.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Again")]
+pub struct Again {
+    /// The program that asks.
+    pub reader: u64,
+    /// The topic.
+    pub topic: String,
+    /// The number of the first message.
+    pub first: u64,
+    /// The number of the last message.
+    pub last: u64,
+}
+
+/// The answer to a request for messages of a state topic: those of them that are not outdated, which were sent.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Covered")]
+pub struct Covered {
+    /// The program that answers.
+    pub program: u64,
+    /// The topic.
+    pub topic: String,
+    /// The number of the first message that was asked for.
+    pub first: u64,
+    /// The number of the last message of this answer.
+    pub last: u64,
+    /// Those that are not outdated, in order.
+    pub numbers: Vec<u64>,
+}

@@ -1,0 +1,95 @@
+//! The keys under which programs put what they say on a network.
+//!
+//! | key | what is there |
+//! | --- | --- |
+//! | `saoms/1/topic/TOPIC/COMPONENT` | messages of components: CDR, with an [`Envelope`](super::exchange::wire::Envelope) beside it |
+//! | `saoms/1/alive/PROGRAM` | signs of life |
+//! | `saoms/1/ask/PROGRAM` | requests to this program to send messages again |
+//! | `saoms/1/again/PROGRAM/TOPIC` | messages that this program asked for |
+//! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
+//!
+//! A program is a number in hexadecimal digits. In names, whatever is not an ASCII letter, a digit, `-`, `_` or `.` is
+//! written as `%` and two hexadecimal digits for each byte of its UTF-8 form.
+
+use std::fmt::Write as _;
+
+/// What all keys begin with: the version of what is said.
+pub const PREFIX: &str = "saoms/1";
+
+/// A name as a part of a key.
+pub fn part(name: &str) -> String {
+    let mut part = String::with_capacity(name.len());
+    for byte in name.bytes() {
+        if byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_' | b'.') {
+            part.push(char::from(byte));
+        } else {
+            let _ = write!(part, "%{byte:02X}");
+        }
+    }
+    if part.is_empty() { "%".to_owned() } else { part }
+}
+
+/// The name that a part of a key is for; `None` where it is for none.
+pub fn name(part: &str) -> Option<String> {
+    if part == "%" {
+        return Some(String::new());
+    }
+    let mut bytes = Vec::with_capacity(part.len());
+    let mut rest = part.bytes();
+    while let Some(byte) = rest.next() {
+        if byte != b'%' {
+            bytes.push(byte);
+            continue;
+        }
+        let mut digit = || char::from(rest.next()?).to_digit(16);
+        let (high, low) = (digit()?, digit()?);
+        bytes.push(u8::try_from(high * 16 + low).ok()?);
+    }
+    String::from_utf8(bytes).ok()
+}
+
+/// The key of the messages of a component on a topic.
+pub fn topic(topic: &str, component: &str) -> String {
+    format!("{PREFIX}/topic/{}/{}", part(topic), part(component))
+}
+
+/// The keys of all messages on a topic.
+pub fn of_topic(topic: &str) -> String {
+    format!("{PREFIX}/topic/{}/*", part(topic))
+}
+
+/// The key of the signs of life of a program.
+pub fn alive(program: u64) -> String {
+    format!("{PREFIX}/alive/{program:x}")
+}
+
+/// The key of requests to a program.
+pub fn ask(program: u64) -> String {
+    format!("{PREFIX}/ask/{program:x}")
+}
+
+/// The key of messages of a topic that a program asked for.
+pub fn again(program: u64, topic: &str) -> String {
+    format!("{PREFIX}/again/{program:x}/{}", part(topic))
+}
+
+/// The key of answers to a program about states.
+pub fn covered(program: u64) -> String {
+    format!("{PREFIX}/covered/{program:x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{name, part};
+
+    #[test]
+    fn any_name_is_a_part_of_a_key_and_back() {
+        for text in ["POSTOPIC", "Event luggage MS", "hall/Robot001", "", "50%", "größe", "*", "a$b#c?"] {
+            let part = part(text);
+            assert!(!part.contains(['/', '*', '$', '#', '?', ' ']) && !part.is_empty(), "{part}");
+            assert_eq!(name(&part).as_deref(), Some(text));
+        }
+        assert_eq!(name("a%2"), None);
+        assert_eq!(name("%FF"), None);
+    }
+}

@@ -1,0 +1,15 @@
+//! Networks: how the programs of a fleet exchange messages.
+//!
+//! A transport is a library that carries bytes as well as it can. What a fleet rests on is made here, above it, so that
+//! it is the same over each transport: [`exchange`] numbers what is sent, finds out what is missing, asks for it again,
+//! and knows which programs are there.
+
+mod client;
+pub mod exchange;
+pub mod key;
+mod port;
+pub mod transport;
+
+pub use client::{Client, Fleet, FromNetwork};
+pub(crate) use port::FromRun;
+pub use port::Port;

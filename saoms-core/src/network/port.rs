@@ -1,0 +1,141 @@
+//! Where the threads of a run and of a transport leave what is for the thread of a network.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use saoms_api::host::SharedMessage;
+
+use super::transport::{Delivered, Receiver};
+
+/// Messages of components that wait for the thread of the network, at most.
+const MOST_MESSAGES: usize = 262_144;
+/// Bytes that wait for it from the transport, at most.
+const MOST_BYTES: usize = 64 << 20;
+
+/// What the run has for the network.
+#[derive(Debug)]
+pub(crate) enum FromRun {
+    /// A component sent a message.
+    Message {
+        topic: Arc<str>,
+        component: Arc<str>,
+        /// The component that it is for; `None`: all readers.
+        to: Option<Arc<str>>,
+        is_state: bool,
+        /// The hash of the schema.
+        schema: u64,
+        message: SharedMessage,
+    },
+    /// Components read a topic.
+    Reads { topic: Arc<str>, is_state: bool, schema: u64 },
+}
+
+/// A frame that arrived.
+#[derive(Debug)]
+pub(super) struct Frame {
+    pub(super) token: u64,
+    pub(super) key: String,
+    pub(super) message: Vec<u8>,
+    pub(super) attachment: Vec<u8>,
+}
+
+/// The state of the link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct LinkChange {
+    pub(super) is_up: bool,
+    pub(super) reason: String,
+}
+
+/// What waits for the thread of the network.
+#[derive(Debug, Default)]
+pub(super) struct Waiting {
+    pub(super) from_run: Vec<FromRun>,
+    /// Messages that found no room.
+    pub(super) lost: u64,
+    pub(super) frames: VecDeque<Frame>,
+    bytes: usize,
+    pub(super) links: Vec<LinkChange>,
+    pub(super) is_closed: bool,
+    sleeps: bool,
+}
+
+/// The place where the threads of a run and of a transport leave what is for the thread of a network. Nobody waits.
+#[derive(Debug, Default)]
+pub struct Port {
+    waiting: Mutex<Waiting>,
+    filled: Condvar,
+}
+
+impl Port {
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn wake(&self, mut waiting: MutexGuard<'_, Waiting>) {
+        let sleeps = std::mem::take(&mut waiting.sleeps);
+        drop(waiting);
+        if sleeps {
+            self.filled.notify_one();
+        }
+    }
+
+    /// Leaves what the run has.
+    pub(crate) fn put(&self, from_run: FromRun) {
+        let mut waiting = self.lock();
+        if waiting.from_run.len() < MOST_MESSAGES {
+            waiting.from_run.push(from_run);
+        } else {
+            waiting.lost += 1;
+        }
+        self.wake(waiting);
+    }
+
+    /// Ends the thread of the network.
+    pub(super) fn close(&self) {
+        let mut waiting = self.lock();
+        waiting.is_closed = true;
+        self.wake(waiting);
+    }
+
+    /// Takes what waits, at once or when there is something, for so long at most. Who does not know yet that the end
+    /// was asked for does not wait then.
+    pub(super) fn take(&self, patience: Duration, knows_end: bool) -> Waiting {
+        let mut waiting = self.lock();
+        let is_empty = |one: &Waiting| one.from_run.is_empty() && one.frames.is_empty() && one.links.is_empty();
+        if is_empty(&waiting) && (knows_end || !waiting.is_closed) && patience > Duration::ZERO {
+            waiting.sleeps = true;
+            waiting = self.filled.wait_timeout(waiting, patience).unwrap_or_else(PoisonError::into_inner).0;
+            waiting.sleeps = false;
+        }
+        let is_closed = waiting.is_closed;
+        let taken = std::mem::take(&mut *waiting);
+        waiting.is_closed = is_closed;
+        taken
+    }
+}
+
+impl Receiver for Port {
+    fn deliver(&self, delivered: Delivered<'_>) -> bool {
+        let mut waiting = self.lock();
+        let size = delivered.message.len() + delivered.attachment.len();
+        if waiting.bytes + size > MOST_BYTES {
+            return false;
+        }
+        waiting.bytes += size;
+        waiting.frames.push_back(Frame {
+            token: delivered.token,
+            key: delivered.key.to_owned(),
+            message: delivered.message.to_vec(),
+            attachment: delivered.attachment.to_vec(),
+        });
+        self.wake(waiting);
+        true
+    }
+
+    fn link(&self, is_up: bool, reason: &str) {
+        let mut waiting = self.lock();
+        waiting.links.push(LinkChange { is_up, reason: reason.to_owned() });
+        self.wake(waiting);
+    }
+}

@@ -1,0 +1,128 @@
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use saoms_abi::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportTable};
+use serde::Deserialize;
+
+use super::TransportError;
+use crate::plugin::{PluginError, load_table, read_section};
+
+/// What the metadata of a transport say.
+#[derive(Clone, Debug, Deserialize)]
+pub struct TransportInfo {
+    /// The name of its library.
+    #[serde(default)]
+    pub package: String,
+    /// The version of its library.
+    #[serde(default)]
+    pub version: String,
+    /// The schemes of the urls that it serves; an empty one is `host:port`.
+    pub schemes: Vec<String>,
+    entry: String,
+}
+
+/// A transport that is loaded.
+#[derive(Clone, Copy, Debug)]
+pub struct Transport {
+    pub(super) table: &'static TransportTable,
+}
+
+/// The scheme of a url; empty for `host:port`.
+pub fn scheme(url: &str) -> &str {
+    url.split_once("://").map_or("", |(scheme, _)| scheme)
+}
+
+impl Transport {
+    /// The transport for a url: from the places that the user named (libraries or folders), then from where libraries
+    /// lie beside the program.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be loaded.
+    pub fn find(url: &str, named: &[PathBuf]) -> Result<Transport, TransportError> {
+        let scheme = scheme(url);
+        let searched: Vec<PathBuf> = named.iter().cloned().chain(beside_the_program()).collect();
+        let mut known = BTreeSet::new();
+        for path in searched.iter().flat_map(|place| libraries(place)) {
+            let info = match TransportInfo::read(&path) {
+                Ok(Some(info)) => info,
+                Ok(None) => continue,
+                Err(error) => return Err(error),
+            };
+            if info.schemes.iter().any(|one| one == scheme) {
+                return Transport::load(&path, &info);
+            }
+            known.extend(
+                info.schemes
+                    .iter()
+                    .map(|one| if one.is_empty() { "`host:port`".to_owned() } else { format!("`{one}://`") }),
+            );
+        }
+        Err(TransportError::Missing { scheme: scheme.to_owned(), searched, known: known.into_iter().collect() })
+    }
+
+    fn load(path: &Path, info: &TransportInfo) -> Result<Transport, TransportError> {
+        let loaded = load_table::<TransportTable>(path, &info.package, &info.entry, TRANSPORT_VERSION);
+        let (_, table) = loaded.map_err(TransportError::Library)?;
+        let unloadable = |message: &str| {
+            let (path, package) = (path.to_owned(), info.package.clone());
+            TransportError::Library(PluginError::Unloadable { path, package, message: message.to_owned() })
+        };
+        // SAFETY: by the rules of the boundary the table is null or constant.
+        let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it returns no table"))?;
+        if table.version != TRANSPORT_VERSION || table.size < size_of::<TransportTable>() {
+            return Err(unloadable("its code and its metadata are not from the same build"));
+        }
+        Ok(Transport { table })
+    }
+}
+
+impl TransportInfo {
+    /// The metadata of a library; `None` where it is no transport.
+    fn read(path: &Path) -> Result<Option<TransportInfo>, TransportError> {
+        #[derive(Deserialize)]
+        struct Head {
+            saoms: String,
+            abi: u32,
+        }
+        let text = match read_section(path, TRANSPORT_SECTION) {
+            Ok(text) => text,
+            Err(PluginError::NoMetadata { .. } | PluginError::NoLibrary { .. }) => return Ok(None),
+            Err(error) => return Err(TransportError::Library(error)),
+        };
+        let malformed = |message: String| TransportError::Metadata { path: path.to_owned(), message };
+        // The version first: metadata of another version may have another shape.
+        let head: Head = serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))?;
+        if head.saoms != "transport" {
+            return Err(malformed(format!("found `{}` for `saoms`, expected `transport`", head.saoms)));
+        }
+        if head.abi != TRANSPORT_VERSION {
+            let (path, found, expected) = (path.to_owned(), head.abi, TRANSPORT_VERSION);
+            return Err(TransportError::Version { path, found, expected });
+        }
+        serde_json::from_str(&text).map(Some).map_err(|error| malformed(error.to_string()))
+    }
+}
+
+/// The folder of the program, and that of libraries beside it as packages have them.
+fn beside_the_program() -> Vec<PathBuf> {
+    let Some(folder) = env::current_exe().ok().and_then(|program| Some(program.parent()?.to_owned())) else {
+        return Vec::new();
+    };
+    let installed = folder.join("../lib/saoms");
+    [folder, installed].into_iter().collect()
+}
+
+/// The libraries of a folder, by name, or a library itself.
+fn libraries(place: &Path) -> Vec<PathBuf> {
+    if place.is_file() {
+        return vec![place.to_owned()];
+    }
+    let Ok(entries) = fs::read_dir(place) else { return Vec::new() };
+    let mut found: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|ending| ending == "so") && path.is_file())
+        .collect();
+    found.sort();
+    found
+}

@@ -1,0 +1,9 @@
+//! Transports: libraries that carry bytes between programs, behind a boundary of C ([`saoms_abi::TransportTable`]).
+
+mod error;
+mod library;
+mod session;
+
+pub use error::TransportError;
+pub use library::{Transport, TransportInfo, scheme};
+pub use session::{Delivered, Opened, Receiver, SessionSettings, TlsFiles, TransportSession};

@@ -1,0 +1,213 @@
+use std::ffi::c_void;
+use std::panic::{self, AssertUnwindSafe};
+use std::ptr;
+use std::sync::Arc;
+
+use saoms_abi::{Bytes, Sink, Status, TransportEvents, TransportTable};
+use serde::Serialize;
+
+use super::Transport;
+
+/// What a session is opened with.
+#[derive(Clone, Debug, Serialize)]
+pub struct SessionSettings {
+    /// Where the network is.
+    pub url: String,
+    /// True for its router, which listens there.
+    pub listen: bool,
+    /// The user.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub user: Option<String>,
+    /// The password of the user.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub password: Option<String>,
+    /// The files of a TLS connection.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tls: Option<TlsFiles>,
+}
+
+/// Paths of the files of a TLS connection.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct TlsFiles {
+    /// Certificates of those who may vouch for others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ca: Option<String>,
+    /// The certificate of this program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<String>,
+    /// The key of this certificate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
+}
+
+/// A message that a transport delivers.
+#[derive(Clone, Copy, Debug)]
+pub struct Delivered<'a> {
+    /// The token of the subscription.
+    pub token: u64,
+    /// The key.
+    pub key: &'a str,
+    /// The message.
+    pub message: &'a [u8],
+    /// What its sender said beside it.
+    pub attachment: &'a [u8],
+}
+
+/// The receiver of what a session delivers, from threads of the transport.
+pub trait Receiver: Send + Sync + 'static {
+    /// A message arrived. False: there is no room for it now.
+    fn deliver(&self, delivered: Delivered<'_>) -> bool;
+
+    /// The link to the network was lost, or is there again, with a reason for people.
+    fn link(&self, is_up: bool, reason: &str);
+}
+
+/// The outcome of an attempt to open a session that did not fail for good.
+#[derive(Debug)]
+pub enum Opened {
+    /// The session.
+    Session(TransportSession),
+    /// Nobody answers there now: why.
+    Unreachable(String),
+}
+
+/// A session of a transport. Dropping it closes it.
+#[derive(Debug)]
+pub struct TransportSession {
+    table: &'static TransportTable,
+    session: *mut c_void,
+    /// What the session calls, until it is closed.
+    state: *const EventState,
+}
+
+struct EventState {
+    receiver: Arc<dyn Receiver>,
+}
+
+// SAFETY: by the rules of the boundary a session is used from any thread.
+unsafe impl Send for TransportSession {}
+// SAFETY: the same; several functions may run at once.
+unsafe impl Sync for TransportSession {}
+
+impl TransportSession {
+    /// Opens a session.
+    ///
+    /// # Errors
+    /// It will not help to try again: why.
+    pub fn open(
+        transport: Transport,
+        settings: &SessionSettings,
+        receiver: Arc<dyn Receiver>,
+    ) -> Result<Opened, String> {
+        let text = serde_json::to_string(settings).map_err(|error| error.to_string())?;
+        let state: *const EventState = Box::into_raw(Box::new(EventState { receiver }));
+        let events =
+            TransportEvents { size: size_of::<TransportEvents>(), state: state.cast_mut().cast(), deliver, link };
+        let mut session = ptr::null_mut();
+        let table = transport.table;
+        let (status, error) = called(|error| {
+            // SAFETY: the table is of this version; all that is lent lives until the call returns, the state until the
+            // session is closed.
+            unsafe { (table.open)(Bytes::text(&text), &raw const events, &raw mut session, error) }
+        });
+        if status == Status::OK && !session.is_null() {
+            return Ok(Opened::Session(TransportSession { table, session, state }));
+        }
+        // SAFETY: there is no session that would call anything with it.
+        drop(unsafe { Box::from_raw(state.cast_mut()) });
+        match status {
+            Status::UNREACHABLE => Ok(Opened::Unreachable(error)),
+            Status::OK => Err("it gave no session".to_owned()),
+            _ => Err(error),
+        }
+    }
+
+    /// Sends a message; urgent ones are few and short, and should overtake others. False: there is no room for it now.
+    ///
+    /// # Errors
+    /// The transport cannot send it.
+    pub fn put(&self, key: &str, message: &[u8], attachment: &[u8], is_urgent: bool) -> Result<bool, String> {
+        let (status, error) = called(|error| {
+            let (key, message, attachment) = (Bytes::text(key), Bytes::lend(message), Bytes::lend(attachment));
+            // SAFETY: the session is open, and the bytes live until the call returns.
+            unsafe { (self.table.put)(self.session, key, message, attachment, u32::from(is_urgent), error) }
+        });
+        match status {
+            Status::OK => Ok(true),
+            Status::FULL => Ok(false),
+            _ => Err(error),
+        }
+    }
+
+    /// Asks for the messages of keys.
+    ///
+    /// # Errors
+    /// The transport refuses.
+    pub fn subscribe(&self, keys: &str, token: u64) -> Result<(), String> {
+        // SAFETY: the session is open, and the text lives until the call returns.
+        done(called(|error| unsafe { (self.table.subscribe)(self.session, Bytes::text(keys), token, error) }))
+    }
+
+    /// Ends a subscription.
+    ///
+    /// # Errors
+    /// The transport cannot.
+    pub fn unsubscribe(&self, token: u64) -> Result<(), String> {
+        // SAFETY: the session is open.
+        done(called(|error| unsafe { (self.table.unsubscribe)(self.session, token, error) }))
+    }
+}
+
+impl Drop for TransportSession {
+    fn drop(&mut self) {
+        // SAFETY: nobody else has the session any more. When the call returns, nobody calls anything with the state.
+        unsafe {
+            (self.table.close)(self.session);
+            drop(Box::from_raw(self.state.cast_mut()));
+        }
+    }
+}
+
+/// Calls a function of a transport, and gives what it says with its status.
+fn called(call: impl FnOnce(Sink) -> Status) -> (Status, String) {
+    unsafe extern "C" fn put(state: *mut c_void, bytes: Bytes) {
+        // SAFETY: the state is the text below, which lives until the call returns; the callee lends the bytes.
+        if let (Some(text), Ok(bytes)) = unsafe { (state.cast::<String>().as_mut(), bytes.get()) } {
+            text.push_str(&String::from_utf8_lossy(bytes));
+        }
+    }
+    let mut error = String::new();
+    let status = call(Sink { state: (&raw mut error).cast(), put });
+    (status, error)
+}
+
+fn done((status, error): (Status, String)) -> Result<(), String> {
+    if status == Status::OK { Ok(()) } else { Err(error) }
+}
+
+unsafe extern "C" fn deliver(state: *mut c_void, token: u64, key: Bytes, message: Bytes, attachment: Bytes) -> Status {
+    let delivered = || {
+        // SAFETY: the state is that of an open session, and the bytes are lent for the time of the call.
+        let (state, key, message, attachment) =
+            unsafe { (state.cast::<EventState>().as_ref(), key.get_text(), message.get(), attachment.get()) };
+        let (Some(state), Ok(key), Ok(message), Ok(attachment)) = (state, key, message, attachment) else {
+            return Status::FAILED;
+        };
+        match state.receiver.deliver(Delivered { token, key, message, attachment }) {
+            true => Status::OK,
+            false => Status::FULL,
+        }
+    };
+    panic::catch_unwind(AssertUnwindSafe(delivered)).unwrap_or(Status::PANICKED)
+}
+
+unsafe extern "C" fn link(state: *mut c_void, is_up: u32, reason: Bytes) {
+    let told = || {
+        // SAFETY: as for `deliver`.
+        if let (Some(state), Ok(reason)) = unsafe { (state.cast::<EventState>().as_ref(), reason.get_text()) } {
+            state.receiver.link(is_up != 0, reason);
+        }
+    };
+    // What a receiver says when it panics is on standard error already.
+    let _ = panic::catch_unwind(AssertUnwindSafe(told));
+}

@@ -1,0 +1,232 @@
+//! The networks that components of the fleet are on: their messages leave the program, and those of other programs come
+//! to the topics of this one.
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
+
+use saoms_api::host::{SharedMessage, TopicKind};
+use saoms_api::{Cause, Header, Level, Time};
+use saoms_lang::assembly::ComponentSpec;
+use saoms_lang::schema::Schema;
+
+use super::engine::ending::EndCause;
+use super::engine::{Engine, RunPhase};
+use super::handle::Handle;
+use super::inject::OUTSIDE;
+use super::shared::Shared;
+use crate::bus::TopicId;
+use crate::hash::text_hash;
+use crate::network::exchange::wire::Vote;
+use crate::network::{Fleet, FromNetwork, FromRun, Port};
+
+/// The network of a component that is on none.
+pub(super) const NO_NETWORK: u8 = u8::MAX;
+
+/// The number of the first component of another program. Components of this one have numbers from 0.
+const FIRST_REMOTE: u32 = 1 << 31;
+
+/// The networks of a run.
+#[derive(Debug, Default)]
+pub(super) struct Networks {
+    /// By their numbers: the url, and where messages for it are left.
+    all: Vec<(String, Arc<Port>)>,
+    /// Of each, whether all its programs agree that no work is left.
+    are_done: Vec<bool>,
+    /// What is left there just before the engine is unlocked.
+    pub(super) waiting: Vec<(u8, FromRun)>,
+    /// The schemas of topics, by the numbers of these.
+    schemas: HashMap<TopicId, (u64, Option<Arc<Schema>>)>,
+}
+
+impl Networks {
+    /// The number of the network of a component.
+    pub(super) fn of(&self, spec: &ComponentSpec) -> u8 {
+        let url = spec.task.as_ref().and_then(|task| task.url.as_deref());
+        let place = url.and_then(|url| self.all.iter().position(|(known, _)| known == url));
+        place.and_then(|place| u8::try_from(place).ok()).unwrap_or(NO_NETWORK)
+    }
+
+    /// True if the programs of all networks agree that no work is left, also where there is no network.
+    pub(super) fn are_done(&self) -> bool {
+        self.are_done.iter().all(|is_done| *is_done)
+    }
+
+    /// Leaves what waits for the threads of the networks.
+    #[cold]
+    pub(super) fn leave(&mut self) {
+        for (network, from_run) in self.waiting.drain(..) {
+            if let Some((_, port)) = self.all.get(usize::from(network)) {
+                port.put(from_run);
+            }
+        }
+    }
+}
+
+/// The paths of components of other programs, by their numbers.
+#[derive(Debug, Default)]
+pub(super) struct RemoteNames {
+    known: RwLock<Known>,
+}
+
+#[derive(Debug, Default)]
+struct Known {
+    names: Vec<&'static str>,
+    numbers: HashMap<&'static str, u32>,
+}
+
+impl RemoteNames {
+    fn read(&self) -> RwLockReadGuard<'_, Known> {
+        self.known.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The name of the component with this number.
+    pub(super) fn get(&self, number: u32) -> Option<&'static str> {
+        self.read().names.get(number.checked_sub(FIRST_REMOTE)? as usize).copied()
+    }
+
+    /// The number of the component with this name. Names stay: a component that comes again has the same number.
+    fn number(&self, name: &str) -> u32 {
+        if let Some(number) = self.read().numbers.get(name) {
+            return *number;
+        }
+        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(number) = known.numbers.get(name) {
+            return *number;
+        }
+        let number = FIRST_REMOTE.saturating_add(u32::try_from(known.names.len()).unwrap_or(u32::MAX)).min(OUTSIDE - 1);
+        // Never freed: contexts lend it to components.
+        let name: &'static str = name.to_owned().leak();
+        known.names.push(name);
+        known.numbers.insert(name, number);
+        number
+    }
+}
+
+impl Engine {
+    /// Leaves a message of a component for its network.
+    #[cold]
+    pub(super) fn put_on_network(
+        &mut self,
+        network: u8,
+        component: &Arc<str>,
+        topic: TopicId,
+        message: &SharedMessage,
+    ) {
+        let to = message.to().and_then(|to| self.slots.get(to as usize)).map(|slot| Arc::clone(&slot.name));
+        let schema = self.schema_of(topic).0;
+        let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
+        let (component, message) = (Arc::clone(component), message.clone());
+        self.networks.waiting.push((network, FromRun::Message { topic, component, to, is_state, schema, message }));
+    }
+
+    /// A component of a network reads a topic.
+    pub(super) fn read_from_network(&mut self, network: u8, topic: TopicId) {
+        let schema = self.schema_of(topic).0;
+        let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
+        self.networks.waiting.push((network, FromRun::Reads { topic, is_state, schema }));
+    }
+
+    /// True if the run may end although no component votes: some are periodic, and nothing is to come from outside.
+    fn has_nothing_to_wait_for(&mut self) -> bool {
+        let is_periodic = self.slots.iter().any(|slot| slot.is_member() && slot.policy.periodic);
+        is_periodic && self.injections.are_over() && self.commits_are_over()
+    }
+
+    /// The schema of a topic, with its hash.
+    fn schema_of(&mut self, topic: TopicId) -> &(u64, Option<Arc<Schema>>) {
+        let bus = &self.bus;
+        self.networks.schemas.entry(topic).or_insert_with(|| {
+            let text = bus.schema(topic);
+            (text_hash(text), Schema::parse(text).ok().map(Arc::new))
+        })
+    }
+}
+
+impl Handle {
+    /// Puts the components whose `url` is this text on a network, in the code that gets the control
+    /// [before they initialize](super::RunningFleet::start_with).
+    pub fn use_network(&self, url: &str, port: &Arc<Port>) -> NetworkedFleet {
+        let mut engine = self.shared.lock();
+        let network = engine.networks.all.len();
+        engine.networks.all.push((url.to_owned(), Arc::clone(port)));
+        engine.networks.are_done.push(false);
+        self.shared.release(engine);
+        NetworkedFleet { shared: Arc::clone(&self.shared), network }
+    }
+}
+
+/// A running fleet as one of its networks sees it.
+pub struct NetworkedFleet {
+    shared: Arc<Shared>,
+    network: usize,
+}
+
+impl Fleet for NetworkedFleet {
+    fn deliver(&self, messages: &mut VecDeque<FromNetwork>) {
+        if messages.is_empty() {
+            return;
+        }
+        let shared = &self.shared;
+        let mut engine = shared.lock();
+        let now = shared.clock.now();
+        while let Some(FromNetwork { topic, arrived }) = messages.front() {
+            let topic = match engine.phase {
+                // Its components are about to be there.
+                RunPhase::Starting => break,
+                RunPhase::Running => engine.bus.find(topic),
+                RunPhase::Stopping | RunPhase::Ended => None,
+            };
+            let Some((topic, schema)) = topic.and_then(|topic| Some((topic, engine.schema_of(topic).1.clone()?)))
+            else {
+                messages.pop_front();
+                continue;
+            };
+            if !engine.bus.has_room(topic) {
+                break;
+            }
+            let to = (!arrived.to.is_empty()).then(|| engine.numbers.get(arrived.to.as_str()).copied());
+            let Some(FromNetwork { arrived, .. }) = messages.pop_front() else { break };
+            // One that is for a component of another program, or that is no message of the topic, is nothing here.
+            if to == Some(None) || schema.check(&arrived.bytes).is_err() {
+                continue;
+            }
+            let sender = shared.remote_names.number(&arrived.component);
+            let header = Header { sender, sent: Time::from_nanos(now), cause: Cause::default() };
+            let (key, place) = (schema.key(&arrived.bytes), schema.place(&arrived.bytes));
+            let message = SharedMessage::from_bytes(header, None, arrived.bytes).of(key, place).only_to(to.flatten());
+            engine.standstill.note_effect(now);
+            engine.send(topic, message, now);
+        }
+        shared.release(engine);
+    }
+
+    fn vote(&self) -> Vote {
+        let mut engine = self.shared.lock();
+        let voters = engine.votes.voters;
+        let vote = match voters {
+            0 => Vote::Silent,
+            _ if engine.sees_work() => Vote::Open,
+            _ => Vote::Done,
+        };
+        self.shared.release(engine);
+        vote
+    }
+
+    fn agree(&self, is_done: bool) {
+        let mut engine = self.shared.lock();
+        if let Some(known) = engine.networks.are_done.get_mut(self.network) {
+            *known = is_done;
+        }
+        let now = self.shared.clock.now();
+        if is_done && engine.votes.voters > 0 {
+            engine.end_if_done(now);
+        } else if is_done && engine.networks.are_done() && engine.has_nothing_to_wait_for() {
+            engine.begin_stop(EndCause::Done, now);
+        }
+        self.shared.release(engine);
+    }
+
+    fn tell(&self, level: Level, text: String) {
+        self.shared.note(level, text);
+    }
+}
