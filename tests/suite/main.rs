@@ -8,6 +8,7 @@ mod command;
 mod control;
 mod fleets;
 mod lsp;
+mod network;
 mod peers;
 mod plugins;
 mod project;

@@ -12,6 +12,7 @@ use saoms_drive as _;
 use saoms_flights as _;
 use saoms_hello as _;
 use saoms_own_loops as _;
+use saoms_relay as _;
 use saoms_sprinkler as _;
 use saoms_testkit::{Fleet, Run};
 use serde_json::Value;

@@ -1,0 +1,127 @@
+//! Numbered events, and readers that hold what they receive to what was sent.
+
+use std::collections::BTreeMap;
+
+use saoms_api::{Class, Component, Context, Failure, Message, Publisher, Subscription, Topic, Work};
+
+/// A numbered event.
+#[derive(Clone, Debug, Message)]
+pub struct Number {
+    sender: String,
+    /// From 1.
+    number: u32,
+    filler: String,
+}
+
+/// A reader that is there.
+#[derive(Clone, Debug, Message)]
+pub struct Present {
+    reader: String,
+}
+
+const NUMBERS: Topic<Number> = Topic::event("NUMBERS").optional();
+const PRESENT: Topic<Present> = Topic::state("PRESENT").optional();
+
+/// Executions between the last reader that it hears of and the first event.
+const PAUSE: u64 = 3;
+
+/// Sends numbered events once all readers are there.
+#[derive(Class)]
+#[class(name = "numbers.Sender", periodic)]
+pub struct Sender {
+    /// The events that it sends.
+    #[property]
+    count: u32,
+    /// Those in each execution.
+    #[property]
+    each: u32,
+    /// The readers that it waits for.
+    #[property(default = 1)]
+    readers: u32,
+    /// The letters of a text in each event.
+    #[property(default = 0)]
+    size: u32,
+    #[publishes(NUMBERS)]
+    numbers: Publisher<Number>,
+    #[subscribes(PRESENT)]
+    present: Subscription<Present>,
+    heard: BTreeMap<String, u64>,
+    sent: u32,
+}
+
+impl Component for Sender {
+    type Properties = saoms_api::Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for Present { reader } in context.receive(&self.present) {
+            self.heard.entry(reader.clone()).or_insert(context.execution());
+        }
+        let last = self.heard.values().max().copied().unwrap_or_default();
+        if self.heard.len() >= self.readers as usize && context.execution() >= last + PAUSE && self.sent < self.count {
+            if self.sent == 0 {
+                context.info("begins");
+            }
+            for _ in 0..self.each.min(self.count - self.sent) {
+                self.sent += 1;
+                let (sender, filler) = (context.name().to_owned(), "x".repeat(self.size as usize));
+                context.send(&self.numbers, Number { sender, number: self.sent, filler })?;
+            }
+            if self.sent == self.count {
+                context.info(format!("has sent 1 to {}", self.sent));
+            }
+        }
+        context.vote(if self.sent == self.count { Work::Done } else { Work::Open });
+        Ok(())
+    }
+}
+
+/// Receives numbered events until it has the last one of each sender, and says what of them is not as it should be.
+#[derive(Class)]
+#[class(name = "numbers.Reader", periodic)]
+pub struct Reader {
+    /// The last number of each sender.
+    #[property]
+    count: u32,
+    /// The senders.
+    #[property(default = 1)]
+    senders: u32,
+    /// The letters of the text in each event.
+    #[property(default = 0)]
+    size: u32,
+    #[subscribes(NUMBERS)]
+    numbers: Subscription<Number>,
+    #[publishes(PRESENT)]
+    present: Publisher<Present>,
+    last: BTreeMap<String, u32>,
+    complete: u32,
+}
+
+impl Component for Reader {
+    type Properties = saoms_api::Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if context.execution() == 0 {
+            context.send(&self.present, Present { reader: context.name().to_owned() })?;
+        }
+        for Number { sender, number, filler } in context.receive(&self.numbers) {
+            let last = self.last.entry(sender.clone()).or_default();
+            if *number != *last + 1 {
+                context.warn(format!("wrong: received {number} of {sender}, expected {}", *last + 1));
+            }
+            if filler.len() != self.size as usize || filler.bytes().any(|letter| letter != b'x') {
+                context.warn(format!("wrong: the text of {number} of {sender} has {} letters", filler.len()));
+            }
+            *last = *number;
+            if *last == self.count {
+                context.info(format!("has received 1 to {number} of {sender}"));
+                self.complete += 1;
+            }
+        }
+        context.vote(if self.complete == self.senders { Work::Done } else { Work::Open });
+        Ok(())
+    }
+}
+
+saoms_api::plugin! {
+    classes: [Sender, Reader],
+}

@@ -1,0 +1,69 @@
+//! Programs that are killed or stop.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::programs::{Programs, Transport};
+use super::{reader, receives_all, senders};
+
+#[test]
+fn a_broker_that_is_killed_and_comes_again_costs_no_event() {
+    broker_comes_again(&Programs::new(), "20000");
+}
+
+#[test]
+fn a_broker_that_is_killed_and_comes_again_costs_no_event_over_zenoh() {
+    // Fewer: without optimization, Zenoh takes its time.
+    broker_comes_again(&Programs::over(Transport::Zenoh), "4000");
+}
+
+#[track_caller]
+fn broker_comes_again(programs: &Programs, count: &str) {
+    let first = programs.broker();
+    let reader = reader(programs, "reader", programs.port, &[("count", count)]);
+    let senders = senders(programs, programs.port, &[("count", count), ("each", "100")]);
+    programs.until(&senders, "Sender2        begins");
+    sleep(Duration::from_secs(1));
+    first.kill();
+    programs.until(&senders, "program `broker` gives no sign of life");
+    sleep(Duration::from_secs(1));
+    let second = programs.broker();
+    receives_all(programs, &reader, count);
+    programs.ends(&senders, 0);
+    programs.end(&second);
+}
+
+#[test]
+fn programs_that_stop_for_seconds_miss_nothing_and_nothing_of_them_is_missed() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let reader = reader(&programs, "reader", programs.port, &[("count", "10000")]);
+    let senders = senders(&programs, programs.port, &[("count", "10000"), ("each", "200")]);
+    programs.until(&senders, "Sender2        begins");
+    for (stopped, name, other) in [(&reader, "reader", &senders), (&senders, "senders", &reader)] {
+        stopped.signal(libc::SIGSTOP);
+        programs.until(other, &format!("program `{name}` gives no sign of life"));
+        sleep(Duration::from_secs(1));
+        stopped.signal(libc::SIGCONT);
+        programs.until(other, &format!("program `{name}` gives signs of life again"));
+    }
+    receives_all(&programs, &reader, "10000");
+    programs.ends(&senders, 0);
+    programs.end(&broker);
+}
+
+#[test]
+fn others_go_on_without_a_reader_that_is_killed() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let stays = reader(&programs, "stays", programs.port, &[("count", "4000")]);
+    let dies = reader(&programs, "dies", programs.port, &[("count", "4000")]);
+    let given = [("count", "4000"), ("each", "200"), ("readers", "2")];
+    let senders = senders(&programs, programs.port, &given);
+    programs.until(&senders, "Sender2        begins");
+    sleep(Duration::from_millis(500));
+    dies.kill();
+    receives_all(&programs, &stays, "4000");
+    programs.ends(&senders, 0);
+    programs.end(&broker);
+}

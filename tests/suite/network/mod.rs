@@ -1,0 +1,33 @@
+//! Fleets in several programs: real processes over loopback, and what happens to processes and lines.
+
+mod broken;
+mod foreign;
+mod lines;
+mod programs;
+mod proxy;
+mod together;
+
+use std::sync::Arc;
+
+use programs::{Given, Program, Programs};
+
+/// Two senders of numbered events in one program, at this port.
+fn senders(programs: &Programs, port: u16, given: Given<'_>) -> Arc<Program> {
+    let tasks = [("Sender1", "numbers.Sender", given), ("Sender2", "numbers.Sender", given)];
+    programs.tasks("senders", port, &tasks)
+}
+
+/// A program with a reader of what both send, at this port.
+fn reader(programs: &Programs, name: &str, port: u16, given: Given<'_>) -> Arc<Program> {
+    let usual = [("senders", "2"), ("queue", "100000")];
+    programs.tasks(name, port, &[(&format!("{name}-Reader"), "numbers.Reader", &[&usual, given].concat())])
+}
+
+/// Waits until a reader has received all of both senders, and for its end.
+#[track_caller]
+fn receives_all(programs: &Programs, reader: &Program, count: &str) {
+    for sender in ["Sender1", "Sender2"] {
+        programs.until(reader, &format!("has received 1 to {count} of {sender}"));
+    }
+    programs.ends(reader, 0);
+}

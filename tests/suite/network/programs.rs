@@ -1,0 +1,222 @@
+//! A fleet in several programs.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::net::TcpListener;
+use std::process::{Child, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::{sleep, spawn};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+use crate::boundary::build;
+use crate::plugins::library;
+use crate::support::command;
+
+/// Time for which something is waited for that has to happen.
+const LONGEST: Duration = Duration::from_secs(180);
+
+/// Properties of a component.
+pub(super) type Given<'a> = &'a [(&'a str, &'a str)];
+
+/// A component: its name, its class, and its properties beside those of each task.
+pub(super) type Task<'a> = (&'a str, &'a str, Given<'a>);
+
+/// The programs of a fleet, and the port of their broker. They are killed with it.
+pub(super) struct Programs {
+    folder: TempDir,
+    transport: Transport,
+    /// The port of the broker.
+    pub(super) port: u16,
+    started: Mutex<Vec<Arc<Program>>>,
+}
+
+/// The transport of a network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Transport {
+    Relay,
+    Zenoh,
+}
+
+/// A program that was started.
+pub(super) struct Program {
+    name: String,
+    child: Mutex<Child>,
+    pid: i32,
+    /// What it has printed.
+    printed: Arc<Mutex<String>>,
+}
+
+/// A port on which nobody listens.
+pub(super) fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+/// A component with these properties.
+pub(super) fn component(name: &str, class: &str, properties: Given<'_>) -> String {
+    let properties = properties.iter().map(|(name, value)| format!("<property name=\"{name}\">{value}</property>"));
+    let properties: String = properties.collect();
+    format!("<component name=\"{name}\"><implementation.java class=\"{class}\"/>{properties}</component>\n")
+}
+
+impl Programs {
+    pub(super) fn new() -> Programs {
+        Programs::over(Transport::Relay)
+    }
+
+    pub(super) fn over(transport: Transport) -> Programs {
+        Programs { folder: tempfile::tempdir().unwrap(), transport, port: free_port(), started: Mutex::default() }
+    }
+
+    /// The address of the network at this port.
+    pub(super) fn url(&self, port: u16) -> String {
+        match self.transport {
+            Transport::Relay => format!("relay://127.0.0.1:{port}"),
+            Transport::Zenoh => format!("127.0.0.1:{port}"),
+        }
+    }
+
+    /// Starts the broker.
+    pub(super) fn broker(&self) -> Arc<Program> {
+        let transport = if self.transport == Transport::Relay { "relay" } else { "" };
+        let address = [("IP", "127.0.0.1"), ("transport", transport), ("port", &self.port.to_string())];
+        self.start("broker", &component("Broker", "unibg.robotics.tca.MessageBrokerImpl", &address))
+    }
+
+    /// Starts a program with these components, on the network at this port.
+    pub(super) fn tasks(&self, name: &str, port: u16, tasks: &[Task<'_>]) -> Arc<Program> {
+        let url = self.url(port);
+        let components = tasks.iter().map(|(name, class, properties)| {
+            let usual = [("ID", *name), ("period", "100"), ("url", &url)];
+            component(name, class, &[&usual, *properties].concat())
+        });
+        self.start(name, &components.collect::<String>())
+    }
+
+    fn start(&self, name: &str, components: &str) -> Arc<Program> {
+        let composite = format!(
+            "<composite xmlns=\"http://www.osoa.org/xmlns/sca/1.0\" targetNamespace=\"http://launch\" \
+             name=\"{name}\">\n{components}</composite>\n"
+        );
+        let file = format!("{name}.composite");
+        fs::write(self.folder.path().join(&file), composite).unwrap();
+        let mut run = command(&["run", &file, "--grace", "10s"]);
+        run.current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        let transport = library(if self.transport == Transport::Relay { "saoms_relay" } else { "saoms_zenoh" });
+        for library in [transport, build::library("numbers")] {
+            run.arg("--plugin").arg(library);
+        }
+        let mut child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let printed = Arc::<Mutex<String>>::default();
+        let (out, err) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
+        for pipe in [Box::new(out) as Box<dyn Read + Send>, Box::new(err)] {
+            let printed = Arc::clone(&printed);
+            spawn(move || {
+                for line in BufReader::new(pipe).lines() {
+                    *printed.lock().unwrap() += &(line.unwrap() + "\n");
+                }
+            });
+        }
+        let pid = i32::try_from(child.id()).unwrap();
+        let program = Arc::new(Program { name: name.to_owned(), child: Mutex::new(child), pid, printed });
+        self.started.lock().unwrap().push(Arc::clone(&program));
+        program
+    }
+
+    /// Waits until a program says this.
+    #[track_caller]
+    pub(super) fn until(&self, program: &Program, text: &str) {
+        self.wait(&format!("`{}` does not say `{text}`", program.name), || program.printed().contains(text));
+    }
+
+    /// Waits for the end of a program, and holds it to an exit code.
+    #[track_caller]
+    pub(super) fn ends(&self, program: &Program, code: i32) {
+        self.wait(&format!("`{}` does not end", program.name), || program.has_ended());
+        let status = program.child.lock().unwrap().wait().unwrap();
+        assert_eq!(status.code(), Some(code), "`{}` ends: {status}\n{}", program.name, self.printed());
+    }
+
+    /// Ends a program that may have ended by itself.
+    #[track_caller]
+    pub(super) fn stop(&self, program: &Program) {
+        program.reaches(libc::SIGTERM);
+        self.wait(&format!("`{}` does not end", program.name), || program.has_ended());
+        let code = program.child.lock().unwrap().wait().unwrap().code();
+        assert!(matches!(code, Some(0 | 130)), "`{}` ends: {code:?}\n{}", program.name, self.printed());
+    }
+
+    /// Ends the broker, which has no end of its own, and holds all programs to having said nothing that is wrong.
+    #[track_caller]
+    pub(super) fn end(&self, broker: &Program) {
+        self.end_without(broker, &["wrong:", "panicked", "are lost"]);
+    }
+
+    /// Ends the broker, and holds all programs to having said none of this.
+    #[track_caller]
+    pub(super) fn end_without(&self, broker: &Program, signs: &[&str]) {
+        broker.signal(libc::SIGTERM);
+        self.ends(broker, 130);
+        let printed = self.printed();
+        for sign in signs {
+            assert!(!printed.contains(sign), "`{sign}`\n{printed}");
+        }
+    }
+
+    #[track_caller]
+    fn wait(&self, what: &str, is: impl Fn() -> bool) {
+        let begin = Instant::now();
+        while !is() {
+            assert!(begin.elapsed() < LONGEST, "{what}\n{}", self.printed());
+            sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// What all programs have printed.
+    pub(super) fn printed(&self) -> String {
+        let started = self.started.lock().unwrap();
+        started.iter().map(|program| format!("--- {}\n{}", program.name, program.printed())).collect()
+    }
+}
+
+impl Drop for Programs {
+    fn drop(&mut self) {
+        for program in self.started.lock().unwrap().iter() {
+            let mut child = program.child.lock().unwrap();
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+impl Program {
+    /// What it has printed.
+    pub(super) fn printed(&self) -> String {
+        self.printed.lock().unwrap().clone()
+    }
+
+    fn has_ended(&self) -> bool {
+        self.child.lock().unwrap().try_wait().unwrap().is_some()
+    }
+
+    /// Sends a signal to it, which has not ended.
+    #[track_caller]
+    pub(super) fn signal(&self, signal: i32) {
+        assert!(self.reaches(signal), "`{}` has ended:\n{}", self.name, self.printed());
+    }
+
+    /// Sends a signal to it; false if it has ended.
+    fn reaches(&self, signal: i32) -> bool {
+        let mut child = self.child.lock().unwrap();
+        // SAFETY: no pointers; the process was not waited for to its end, and nobody else waits for it meanwhile.
+        child.try_wait().unwrap().is_none() && unsafe { libc::kill(self.pid, signal) } == 0
+    }
+
+    /// Kills it, as a crash or a loss of power ends it.
+    #[track_caller]
+    pub(super) fn kill(&self) {
+        self.signal(libc::SIGKILL);
+        let _ = self.child.lock().unwrap().wait();
+    }
+}

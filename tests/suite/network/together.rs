@@ -1,0 +1,69 @@
+//! A fleet that is divided among programs works as one.
+
+use std::sync::Arc;
+
+use super::programs::{Program, Programs, Transport};
+use super::{reader, receives_all, senders};
+
+fn work(programs: &Programs) -> Arc<Program> {
+    let scenario = "at 3s luggage (3,1) to (3,10)\nat 3s luggage (5,1) to (5,10)";
+    let environment = ("Environment", "saoms.Environment", &[("scenario", scenario)][..]);
+    programs.tasks("work", programs.port, &[environment, ("Master", "saoms.MasterEnvironment", &[])])
+}
+
+fn robots(programs: &Programs) -> Arc<Program> {
+    programs.tasks("robots", programs.port, &[("Robot001", "robot.Robot001", &[]), ("Robot002", "robot.Robot002", &[])])
+}
+
+#[track_caller]
+fn deliver_all(programs: &Programs, broker: &Program, work: &Program, robots: &Program) {
+    for luggage in ["deposited luggage 1 at (3,10)", "deposited luggage 2 at (5,10)"] {
+        programs.until(robots, luggage);
+    }
+    // Nobody sees work left: all end that have any.
+    programs.ends(work, 0);
+    programs.ends(robots, 0);
+    assert!(work.printed().contains("2 of 2 pieces of luggage delivered"), "{}", work.printed());
+    programs.end(broker);
+}
+
+#[test]
+fn robots_of_another_program_deliver_all_luggage() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let (work, robots) = (work(&programs), robots(&programs));
+    deliver_all(&programs, &broker, &work, &robots);
+}
+
+#[test]
+fn programs_wait_for_the_broker() {
+    let programs = Programs::new();
+    let (work, robots) = (work(&programs), robots(&programs));
+    for program in [&work, &robots] {
+        programs.until(program, &format!("waits for the message broker at `{}`", programs.url(programs.port)));
+    }
+    let broker = programs.broker();
+    deliver_all(&programs, &broker, &work, &robots);
+}
+
+#[test]
+fn robots_of_another_program_deliver_all_luggage_over_zenoh_too() {
+    let programs = Programs::over(Transport::Zenoh);
+    let (work, robots) = (work(&programs), robots(&programs));
+    programs.until(&robots, "waits for the message broker at");
+    programs.until(&robots, "nobody listens there");
+    let broker = programs.broker();
+    deliver_all(&programs, &broker, &work, &robots);
+}
+
+#[test]
+fn messages_of_a_megabyte_arrive() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let usual = [("count", "6"), ("size", "1048576")];
+    let reader = reader(&programs, "reader", programs.port, &usual);
+    let senders = senders(&programs, programs.port, &[&usual[..], &[("each", "1")]].concat());
+    receives_all(&programs, &reader, "6");
+    programs.ends(&senders, 0);
+    programs.end(&broker);
+}
