@@ -67,3 +67,24 @@ fn others_go_on_without_a_reader_that_is_killed() {
     programs.ends(&senders, 0);
     programs.end(&broker);
 }
+
+/// As a service manager does it.
+#[test]
+fn a_program_that_is_killed_and_started_again_at_once_is_heard_from_its_first_event() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let reader = reader(&programs, "reader", programs.port, &[("count", "2000")]);
+    let given = [("count", "2000"), ("each", "50")];
+    let first = senders(&programs, programs.port, &given);
+    programs.until(&first, "Sender2        begins");
+    sleep(Duration::from_millis(500));
+    first.kill();
+    let second = senders(&programs, programs.port, &given);
+    receives_all(&programs, &reader, "2000");
+    programs.ends(&second, 0);
+    let wrong: Vec<String> =
+        reader.printed().lines().filter_map(|line| Some(line.split_once("wrong: ")?.1.to_owned())).collect();
+    let is_first = |sender: u32| wrong.iter().any(|line| line.starts_with(&format!("received 1 of Sender{sender},")));
+    assert!(wrong.len() == 2 && is_first(1) && is_first(2), "{wrong:?}\n{}", programs.printed());
+    programs.end_without(&broker, &["panicked", "are lost", "runs in program"]);
+}
