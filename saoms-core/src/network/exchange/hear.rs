@@ -92,12 +92,8 @@ impl Exchange {
         let program = alive.program;
         let mut ready = Vec::new();
         let Some(peer) = self.peers.get_mut(&program) else { return };
-        for Sends { topic, last, oldest, schema, .. } in &alive.sends {
-            let Some((topic, own)) = self.reads.get_key_value(topic.as_str()) else { continue };
-            if own.schema != *schema && peer.differing.insert(Arc::clone(topic)) {
-                let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
-                self.actions.push(Action::Tell(News::Differs { program, name, topic }));
-            }
+        for Sends { topic, last, oldest, .. } in &alive.sends {
+            let Some((topic, _)) = self.reads.get_key_value(topic.as_str()) else { continue };
             let incoming = peer.incoming.entry(Arc::clone(topic)).or_default();
             incoming.last = incoming.last.max(*last);
             let (count, late) = incoming.skip_to(*oldest);
@@ -126,7 +122,6 @@ impl Exchange {
         let sends = self.outgoing.iter().map(|(topic, outgoing)| Sends {
             topic: topic.to_string(),
             is_state: outgoing.is_state(),
-            schema: outgoing.schema,
             last: outgoing.last,
             oldest: outgoing.oldest(),
         });

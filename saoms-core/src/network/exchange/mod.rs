@@ -128,7 +128,7 @@ impl Exchange {
     pub fn send(&mut self, message: OwnMessage<'_>) {
         let OwnMessage { topic, is_state, component, to, key, sent, schema, cause, bytes } = message;
         if !self.outgoing.contains_key(topic) {
-            self.outgoing.insert(Arc::clone(topic), Outgoing::new(is_state, schema));
+            self.outgoing.insert(Arc::clone(topic), Outgoing::new(is_state));
             // Readers that were heard before read it from its first message on.
             self.say_soon();
         }
@@ -159,18 +159,22 @@ impl Exchange {
     /// A message of a component of another program arrived.
     pub fn receive(&mut self, topic: &str, bytes: &[u8], envelope: &[u8], now: u64) {
         let Ok(envelope) = cdr::decode::<Envelope>(envelope) else { return };
-        let Some((topic, is_state)) = self.reads.get_key_value(topic) else { return };
-        let (topic, is_state) = (Arc::clone(topic), is_state.is_state);
+        let Some((topic, own)) = self.reads.get_key_value(topic) else { return };
+        let (topic, own) = (Arc::clone(topic), *own);
         self.pass(now);
         // One that was never heard is heard soon, and its messages are sent again.
         let Some(peer) = self.peers.get_mut(&envelope.program) else { return };
-        let Envelope { program, number, component, to, key, has_key, sent, .. } = envelope;
+        let Envelope { program, number, component, to, key, has_key, sent, schema, .. } = envelope;
         if number > LARGEST_NUMBER {
             return;
         }
         let arrived = Arrived { component, to, key: has_key.then_some(key), sent, bytes: bytes.to_owned() };
         let incoming = peer.incoming.entry(Arc::clone(&topic)).or_default();
-        let ready = match is_state {
+        if schema != own.schema && peer.differing.insert(Arc::clone(&topic)) {
+            let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
+            self.actions.push(Action::Tell(News::Differs { program, name, topic }));
+        }
+        let ready = match own.is_state {
             true => incoming.take_state(number, arrived).into_iter().collect(),
             false => incoming.take_event(number, arrived),
         };

@@ -38,20 +38,18 @@ pub(super) enum Kept {
 pub(super) struct Outgoing {
     /// The number of the last message.
     pub(super) last: u64,
-    /// The hash of the schema of the messages.
-    pub(super) schema: u64,
     pub(super) kept: Kept,
     /// The size of what is kept, in bytes.
     pub(super) size: usize,
 }
 
 impl Outgoing {
-    pub(super) fn new(is_state: bool, schema: u64) -> Outgoing {
+    pub(super) fn new(is_state: bool) -> Outgoing {
         let kept = match is_state {
             true => Kept::States { newest: BTreeMap::new(), numbers: HashMap::new() },
             false => Kept::Events(VecDeque::new()),
         };
-        Outgoing { last: 0, schema, kept, size: 0 }
+        Outgoing { last: 0, kept, size: 0 }
     }
 
     pub(super) fn is_state(&self) -> bool {

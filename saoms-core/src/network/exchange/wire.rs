@@ -87,8 +87,6 @@ pub struct Sends {
     pub topic: String,
     /// True for a state topic: a message may be left out where a newer one of its component and key follows.
     pub is_state: bool,
-    /// The hash of the schema of its messages.
-    pub schema: u64,
     /// The number of the last message.
     pub last: u64,
     /// The number of the first message that can be sent again.

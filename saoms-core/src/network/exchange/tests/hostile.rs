@@ -39,13 +39,7 @@ fn said() -> impl Strategy<Value = Said> {
                 name: "stranger".to_owned(),
                 number: number[0],
                 patience: number[1],
-                sends: vec![Sends {
-                    topic: topic.clone(),
-                    is_state,
-                    schema: number[1] % 2,
-                    last: number[2],
-                    oldest: number[3],
-                }],
+                sends: vec![Sends { topic: topic.clone(), is_state, last: number[2], oldest: number[3] }],
                 reads: vec![Reads { topic: topic.clone() }],
                 received: vec![Received { program: number[4] % 4, topic: topic.clone(), next: number[5] }],
                 welcomes: vec![Welcome { reader: number[6] % 4, topic, first: number[7] }],
@@ -55,7 +49,10 @@ fn said() -> impl Strategy<Value = Said> {
         });
     let message = (0..4_u64, edge(), topic(), any::<bool>()).prop_map(|(program, number, topic, has_key)| {
         let (component, to) = ("Stranger".to_owned(), String::new());
-        Said::Message(topic, Envelope { program, number, component, to, key: 1, has_key, sent: 0, schema: 0, cause: 0 })
+        Said::Message(
+            topic,
+            Envelope { program, number, component, to, key: 1, has_key, sent: 0, schema: number % 2, cause: 0 },
+        )
     });
     let again = (numbers(), topic()).prop_map(|(number, topic)| Again {
         reader: 1,

@@ -39,6 +39,7 @@ pub(super) struct Delivered {
 pub(super) struct Program {
     pub(super) exchange: Exchange,
     pub(super) is_stopped: bool,
+    component: Arc<str>,
     sent: BTreeMap<String, u64>,
     told: Vec<String>,
 }
@@ -76,17 +77,28 @@ impl Lossy {
 
     /// Another program joins.
     pub(super) fn join(&mut self) {
+        self.join_with(&format!("Robot{}", self.programs.len()), 0);
+    }
+
+    /// Another program joins, with this component, and this schema of events.
+    pub(super) fn join_with(&mut self, component: &str, schema: u64) {
         let number = self.programs.len();
         let mut exchange = Exchange::new(Settings {
             program: number as u64,
             name: number.to_string(),
             patience: 1_000 * MILLISECOND,
             limit: 256 << 10,
-            components: BTreeSet::from([format!("Robot{number}")]),
+            components: BTreeSet::from([component.to_owned()]),
         });
-        exchange.read(&Arc::from("EVENTS"), false, 0);
+        exchange.read(&Arc::from("EVENTS"), false, schema);
         exchange.read(&Arc::from("STATES"), true, 0);
-        self.programs.push(Program { exchange, is_stopped: false, sent: BTreeMap::new(), told: Vec::new() });
+        self.programs.push(Program {
+            exchange,
+            is_stopped: false,
+            component: Arc::from(component),
+            sent: BTreeMap::new(),
+            told: Vec::new(),
+        });
     }
 
     /// A program sends an event.
@@ -123,7 +135,7 @@ impl Lossy {
         sender.exchange.send(OwnMessage {
             topic: &Arc::from(topic),
             is_state,
-            component: &Arc::from(format!("Robot{program}")),
+            component: &Arc::clone(&sender.component),
             to: None,
             key,
             sent: self.now,
@@ -133,6 +145,12 @@ impl Lossy {
         });
         self.carry_out(program);
         number
+    }
+
+    /// A program leaves.
+    pub(super) fn leave(&mut self, program: usize) {
+        self.programs[program].exchange.leave();
+        self.carry_out(program);
     }
 
     /// Lets time pass.

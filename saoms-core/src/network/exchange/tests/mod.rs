@@ -129,6 +129,57 @@ fn events_that_nobody_takes_in_time_are_counted_at_both_ends() {
     assert_eq!(events(&network, "EVENTS")[&(0, 1)].len() as u64 + reader, 2000);
 }
 
+#[test]
+fn a_component_that_begins_anew_in_another_program_is_heard_at_once() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    (0..5).for_each(|_| network.send(0, "EVENTS"));
+    network.run(500 * MILLISECOND);
+    network.programs[0].is_stopped = true;
+    network.join_with("Robot0", 0);
+    network.run(200 * MILLISECOND);
+    network.send(2, "EVENTS");
+    network.run(3_000 * MILLISECOND);
+    assert_eq!(events(&network, "EVENTS")[&(2, 1)], [1]);
+    let told = network.told(1);
+    assert!(told.contains(&"Anew Robot0 2 5".to_owned()), "{told:?}");
+    assert!(!told.iter().any(|line| line.starts_with("Twice")), "{told:?}");
+    // The first one was stopped alone: it comes back, and the component runs twice.
+    network.programs[0].is_stopped = false;
+    network.send(0, "EVENTS");
+    network.run(3_000 * MILLISECOND);
+    assert_eq!(events(&network, "EVENTS")[&(0, 1)].len(), 5);
+    let told: Vec<String> = network.told(1).into_iter().filter(|line| line.starts_with("Twice")).collect();
+    assert_eq!(told, ["Twice Robot0 0"]);
+}
+
+#[test]
+fn messages_of_another_schema_are_told_once_and_do_not_count() {
+    let mut network = Lossy::new(1, Weather::calm(), 1);
+    network.join_with("Robot1", 7);
+    network.run(500 * MILLISECOND);
+    (0..3).for_each(|_| network.send(0, "EVENTS"));
+    network.run(2_000 * MILLISECOND);
+    assert_eq!(events(&network, "EVENTS"), Heard::new());
+    let told: Vec<String> = network.told(1).into_iter().filter(|line| line.starts_with("Differs")).collect();
+    assert_eq!(told, ["Differs 0 EVENTS"]);
+    assert!(network.programs[0].exchange.is_complete(), "nothing is kept for who does not want it");
+}
+
+#[test]
+fn who_leaves_waits_for_readers_that_are_away_and_then_says_what_they_lack() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    network.programs[1].is_stopped = true;
+    (0..3).for_each(|_| network.send(0, "EVENTS"));
+    network.run(5_000 * MILLISECOND);
+    assert!(!network.programs[0].exchange.is_complete(), "it may come back");
+    network.run(10_000 * MILLISECOND);
+    assert!(network.programs[0].exchange.is_complete(), "it was missed for long");
+    network.leave(0);
+    assert_eq!(network.told(0).last().map(String::as_str), Some("Unreceived 1 EVENTS 3"));
+}
+
 fn weather() -> impl Strategy<Value = Weather> {
     (0..40_u32, 0..30_u32, 0..120_u64).prop_map(|(loss, repeats, jitter)| Weather { loss, repeats, jitter })
 }
