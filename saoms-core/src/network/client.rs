@@ -63,7 +63,7 @@ pub struct Client {
 }
 
 impl Client {
-    /// Takes part in a network with this session, which delivers to the port.
+    /// Takes part in a network that a transport has joined, and that delivers to the port.
     ///
     /// # Errors
     /// The transport refuses a subscription, or the system a thread: why.

@@ -30,6 +30,7 @@ pub use error::PluginError;
 pub(crate) use file::read_section;
 pub(crate) use library::load_table;
 pub use metadata::Metadata;
+pub(crate) use search::libraries;
 pub use search::{FoundLibraries, Search};
 
 use saoms_lang::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};

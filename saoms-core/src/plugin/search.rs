@@ -144,7 +144,7 @@ fn is_among<'a>(path: &Path, mut places: impl Iterator<Item = &'a PathBuf>) -> b
 }
 
 /// The libraries of a folder, by name; none where it does not exist.
-fn libraries(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn libraries(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let mut found: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))

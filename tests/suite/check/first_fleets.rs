@@ -1,7 +1,12 @@
 //! What new users meet in their first fleets: one mistake, told once, where it was made.
 
+use std::fs;
+
+use saoms_testkit::Fleet;
+
 use super::hints::{assert_hint, told_of};
 use super::rules::{Component, MASTER, ROBOT, found};
+use crate::support::root;
 
 fn with(scenario: &str, others: &[Component<'_>]) -> Vec<String> {
     let scenario = [("scenario", scenario)];
@@ -124,4 +129,15 @@ fn one_mistake_in_a_fleet_of_replicas_is_told_once_with_what_to_do() {
     let fleet = HANGAR.replace("name=\"landings\">true", "name=\"width\">24").replace(condition, "");
     let told = told_of("hangar unused", &[("fleet.composite", &fleet), ("hangar.csv", TABLE)], &["fleet.composite"]);
     assert_hint("unused", &told, "S2026", "let component `World` take the value, with `source=\"$width\"`");
+}
+
+#[test]
+fn shipped_fleets_break_no_rule() {
+    for entry in fs::read_dir(root().join("composites")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "composite") {
+            let found = Fleet::of_file(&path).diagnostics();
+            assert!(!found.contains(" S50"), "{}:\n{found}", path.display());
+        }
+    }
 }

@@ -490,14 +490,3 @@ fn a_battery_beyond_its_range_is_told_so() {
         ["error S3008 property `battery`: `101` is out of range: expected a number from 0.0 to 100.0 [%]"]
     );
 }
-
-#[test]
-fn shipped_fleets_break_no_rule() {
-    for entry in fs::read_dir(root().join("composites")).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "composite") {
-            let found = Fleet::of_file(&path).diagnostics();
-            assert!(!found.contains(" S50"), "{}:\n{found}", path.display());
-        }
-    }
-}

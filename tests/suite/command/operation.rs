@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::support::{command, saoms, stderr, stdout};
+use crate::support::{code, command, saoms, stderr, stdout};
 
 const HANGAR: &str = "composites/hangar.composite";
 
@@ -84,4 +84,24 @@ fn severities_of_the_command_line_decide_the_exit_code() {
     let run = saoms(&["run", &path, "--virtual", "--severity", "S3001=alow"]);
     assert_eq!(run.status.code(), Some(2));
     assert!(stderr(&run).contains("replace it with `allow`"), "{}", stderr(&run));
+}
+
+#[test]
+fn the_manuals_files_check_and_run_as_they_are() {
+    let files = ["robotenvironment", "launchbroker", "launchtasks"];
+    for name in files {
+        let path = format!("composites/manual/{name}.composite");
+        let output = saoms(&["check", &path]);
+        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
+        // What goes beyond one program is in `network`.
+        let output = saoms(&["run", &path, "--virtual", "--for", "200ms"]);
+        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
+    }
+    let both = ["composites/manual/launchbroker.composite", "composites/manual/launchtasks.composite"];
+    let output = saoms(&["run", both[0], both[1], "--virtual", "--for", "10s", "--report", "-", "--quiet"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let names: Vec<&str> =
+        report["components"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["MessageBrokerComponent", "Robot001", "Robot002"]);
 }

@@ -142,26 +142,6 @@ fn the_time_given_ends_a_run_with_work_left() {
 }
 
 #[test]
-fn the_manuals_files_check_and_run_as_they_are() {
-    let files = ["robotenvironment", "launchbroker", "launchtasks"];
-    for name in files {
-        let path = format!("composites/manual/{name}.composite");
-        let output = saoms(&["check", &path]);
-        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
-        // What goes beyond one program is in `network`.
-        let output = saoms(&["run", &path, "--virtual", "--for", "200ms"]);
-        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
-    }
-    let both = ["composites/manual/launchbroker.composite", "composites/manual/launchtasks.composite"];
-    let output = saoms(&["run", both[0], both[1], "--virtual", "--for", "10s", "--report", "-", "--quiet"]);
-    assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
-    let names: Vec<&str> =
-        report["components"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["MessageBrokerComponent", "Robot001", "Robot002"]);
-}
-
-#[test]
 fn ctrl_c_ends_through_shutdown_and_still_reports() {
     let folder = empty_folder("interrupt");
     let fleet = file(&folder, "one.composite", ONE_ROBOT);

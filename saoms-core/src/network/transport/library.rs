@@ -1,12 +1,12 @@
 use std::collections::BTreeSet;
+use std::env;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
 use saoms_abi::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportTable};
 use serde::Deserialize;
 
 use super::TransportError;
-use crate::plugin::{PluginError, load_table, read_section};
+use crate::plugin::{PluginError, libraries, load_table, read_section};
 
 /// What the metadata of a transport say.
 #[derive(Clone, Debug, Deserialize)]
@@ -43,7 +43,7 @@ impl Transport {
         let scheme = scheme(url);
         let searched: Vec<PathBuf> = named.iter().cloned().chain(beside_the_program()).collect();
         let mut known = BTreeSet::new();
-        for path in searched.iter().flat_map(|place| libraries(place)) {
+        for path in searched.iter().flat_map(|place| libraries_at(place)) {
             let info = match TransportInfo::read(&path) {
                 Ok(Some(info)) => info,
                 Ok(None) => continue,
@@ -113,16 +113,7 @@ fn beside_the_program() -> Vec<PathBuf> {
     [folder, installed].into_iter().collect()
 }
 
-/// The libraries of a folder, by name, or a library itself.
-fn libraries(place: &Path) -> Vec<PathBuf> {
-    if place.is_file() {
-        return vec![place.to_owned()];
-    }
-    let Ok(entries) = fs::read_dir(place) else { return Vec::new() };
-    let mut found: Vec<PathBuf> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.extension().is_some_and(|ending| ending == "so") && path.is_file())
-        .collect();
-    found.sort();
-    found
+/// The libraries of a place: a folder, or a library itself.
+fn libraries_at(place: &Path) -> Vec<PathBuf> {
+    if place.is_file() { vec![place.to_owned()] } else { libraries(place) }
 }

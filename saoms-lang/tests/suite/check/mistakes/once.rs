@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::check::mistakes::slips::{GPS, of, robot};
-use crate::check::support::{fleet, outcome, part};
+use crate::check::support::{faults_of, fleet, fleet_1_0, outcome, part};
 use crate::check::values::files::checked;
 
 /// Two robots that take their number from a property of the composite, which is given as `given`.
@@ -270,4 +270,37 @@ fn an_expression_that_nobody_reads_and_makes_ids_equal_is_told_once() {
           help: give every robot its own `ID`
           help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
     "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
+}
+
+#[test]
+fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
+    let own =
+        "<property period=\"100\"/><property  speed='1' many=\"true\">2</property><property nam=\"x\"/><property/>";
+    let text = format!("<component name=\"R\"><implementation.java class=\"example.Robot\"/>\n{own}</component>");
+    expect![[r#"
+        3:11-17 error S1007: `property` has no attribute `period`
+          fix: replace it with `name="period" value="100"` [3:11-23 "name=\"period\" value=\"100\""]
+        3:36-41 error S1007: `property` has no attribute `speed`
+          fix: replace it with `name="speed" value="1"` [3:36-45 "name=\"speed\" value=\"1\""]
+        3:80-83 error S1007: `property` has no attribute `nam`
+          fix: replace `nam` with `name` [3:80-83 "name"]
+        3:85-86 error S3004: class `example.Robot` has no property `x`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+        3:90-98 error S1008: `property` needs the attribute `name`
+          help: add `name="..."` to it
+    "#]]
+    .assert_eq(&of(&text));
+    expect![[r#"
+        3:11-17 error S1007: `property` has no attribute `period`
+          help: write `<property name="period">100</property>`
+        3:36-41 error S1007: `property` has no attribute `speed`
+          help: write `<property name="speed">1</property>`
+        3:80-83 error S1007: `property` has no attribute `nam`
+          fix: replace `nam` with `name` [3:80-83 "name"]
+        3:85-86 error S3004: class `example.Robot` has no property `x`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+        3:90-98 error S1008: `property` needs the attribute `name`
+          help: add `name="..."` to it
+    "#]]
+    .assert_eq(&faults_of(&[&fleet_1_0(&text)], &[]));
 }

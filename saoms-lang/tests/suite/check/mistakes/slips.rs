@@ -2,7 +2,7 @@
 
 use expect_test::expect;
 
-use crate::check::support::{faults_of, fleet, fleet_1_0, nested, outcome, part, shown};
+use crate::check::support::{faults_of, fleet, nested, outcome, part, shown};
 use crate::check::values::files::checked;
 
 /// The diagnostics of a fleet with the prefix of SAOMS.
@@ -423,39 +423,6 @@ fn folders_stand_before_slashes() {
           help: separate folders with `/`: write `./n.txt`
     "#]]
     .assert_eq(&found);
-}
-
-#[test]
-fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
-    let own =
-        "<property period=\"100\"/><property  speed='1' many=\"true\">2</property><property nam=\"x\"/><property/>";
-    let text = format!("<component name=\"R\"><implementation.java class=\"example.Robot\"/>\n{own}</component>");
-    expect![[r#"
-        3:11-17 error S1007: `property` has no attribute `period`
-          fix: replace it with `name="period" value="100"` [3:11-23 "name=\"period\" value=\"100\""]
-        3:36-41 error S1007: `property` has no attribute `speed`
-          fix: replace it with `name="speed" value="1"` [3:36-45 "name=\"speed\" value=\"1\""]
-        3:80-83 error S1007: `property` has no attribute `nam`
-          fix: replace `nam` with `name` [3:80-83 "name"]
-        3:85-86 error S3004: class `example.Robot` has no property `x`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
-        3:90-98 error S1008: `property` needs the attribute `name`
-          help: add `name="..."` to it
-    "#]]
-    .assert_eq(&of(&text));
-    expect![[r#"
-        3:11-17 error S1007: `property` has no attribute `period`
-          help: write `<property name="period">100</property>`
-        3:36-41 error S1007: `property` has no attribute `speed`
-          help: write `<property name="speed">1</property>`
-        3:80-83 error S1007: `property` has no attribute `nam`
-          fix: replace `nam` with `name` [3:80-83 "name"]
-        3:85-86 error S3004: class `example.Robot` has no property `x`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
-        3:90-98 error S1008: `property` needs the attribute `name`
-          help: add `name="..."` to it
-    "#]]
-    .assert_eq(&faults_of(&[&fleet_1_0(&text)], &[]));
 }
 
 #[test]
