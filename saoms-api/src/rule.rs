@@ -273,7 +273,10 @@ pub struct ComponentView<'a> {
     pub starts: bool,
     /// True if it starts again after a failure (`restart`). A rule of a library gets false.
     pub restarts: bool,
-    /// True if its messages go to a broker, which may have users outside this fleet.
+    /// The node that runs it; empty in a fleet without nodes, and for a rule of a library.
+    pub node: &'a str,
+    /// True if its messages go to a broker, which may have users outside this fleet: a fleet that names its nodes has
+    /// none.
     pub has_broker: bool,
     /// The topics that have another name on the bus than in the declaration of its class: that one, and the one on the
     /// bus.

@@ -138,6 +138,10 @@ fn component(component: &ComponentSpec, name: &str, references: impl IntoIterato
         "" => node,
         site => node.with("s:site", site).declare("s", SAOMS_NAMESPACE),
     };
+    let node = match component.node.as_str() {
+        "" => node,
+        name => node.with("s:node", name).declare("s", SAOMS_NAMESPACE),
+    };
     node.child(implementation(component)).children(valued(component)).children(references).children(loops(component))
 }
 

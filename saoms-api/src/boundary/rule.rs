@@ -100,6 +100,7 @@ unsafe fn read_member<'a>(
             period: (view.period != u64::MAX).then(|| Duration::from_nanos(view.period)),
             starts: view.starts != 0,
             restarts: false,
+            node: "",
             has_broker: view.has_broker != 0,
             renamed,
             wires,

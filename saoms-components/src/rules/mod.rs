@@ -55,4 +55,5 @@ saoms_api::fleet_rules!(
     zones::corridors::RULE,
     masters::FORGETS,
     sustain::crowded::RULE,
+    zones::nodes::RULE,
 );

@@ -48,6 +48,7 @@ fn assembly(text: &str) -> Assembly {
         let mut spec = ComponentSpec {
             path: words[0].to_owned(),
             site: Default::default(),
+            node: Default::default(),
             task: class.declaration().is_periodic().then(|| {
                 let values = [("ID", words[0]), ("period", "10")];
                 let values = values.map(|(name, value)| (name.into(), PropertyValue::from(value)));

@@ -90,6 +90,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         path: path.to_owned(),
         class,
         site: Default::default(),
+        node: Default::default(),
         library: None,
         values,
         written: Default::default(),

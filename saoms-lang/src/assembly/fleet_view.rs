@@ -36,7 +36,8 @@ pub fn seen<R>(assembly: &Assembly, site: &str, judge: impl FnOnce(&FleetView<'_
             period: spec.task.as_ref().map(|task| task.period),
             starts: spec.task.as_ref().is_none_or(|task| task.run_on_startup),
             restarts: spec.task.as_ref().is_some_and(|task| task.restarts() > 0),
-            has_broker: spec.task.as_ref().is_some_and(|task| task.url.is_some()),
+            node: &spec.node,
+            has_broker: spec.node.is_empty() && spec.task.as_ref().is_some_and(|task| task.url.is_some()),
             renamed,
             wires,
         }

@@ -4,6 +4,7 @@
 
 mod fault_subjects;
 mod fleet_view;
+mod placement;
 mod run_policy;
 mod task;
 pub(crate) mod topic_list;
@@ -32,6 +33,10 @@ use crate::registry::{RegisteredClass, RegisteredLoop};
 pub struct Assembly {
     /// Every component; its place here is its index.
     pub components: Vec<ComponentSpec>,
+    /// The components that run in other programs; see [`Assembly::at`]. Nobody is wired to them.
+    pub elsewhere: Vec<ComponentSpec>,
+    /// The node that this is the part of; empty for a whole fleet.
+    pub node: SmolStr,
     /// What the outermost composites say of the run.
     pub run: RunPolicy,
 }
@@ -43,6 +48,8 @@ pub struct ComponentSpec {
     pub path: String,
     /// The site, with those around it, as `North` or `Plant/North`; empty outside all sites.
     pub site: SmolStr,
+    /// The node that runs it; empty in a fleet without nodes.
+    pub node: SmolStr,
     /// The class.
     pub class: Arc<RegisteredClass>,
     /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute

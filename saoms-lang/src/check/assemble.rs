@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use smol_str::SmolStr;
+
 use crate::assembly::{Assembly, ComponentSpec, Wire, WireTarget};
 use crate::check::classes;
 use crate::check::component::ComponentCheck;
@@ -52,6 +54,7 @@ pub(crate) fn assemble(
         components.push(ComponentSpec {
             path: member.path().to_owned(),
             site: member.site.clone(),
+            node: member.node.clone(),
             class: Arc::clone(class.class),
             library: classes::library(member.component, fleet.contribution, sources),
             values,
@@ -61,5 +64,10 @@ pub(crate) fn assemble(
             loops: check.loops?.specs,
         });
     }
-    Some(Assembly { components, run: run_settings::policy(fleet, sources) })
+    Some(Assembly {
+        components,
+        elsewhere: Vec::new(),
+        node: SmolStr::default(),
+        run: run_settings::policy(fleet, sources),
+    })
 }

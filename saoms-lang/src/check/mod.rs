@@ -16,6 +16,7 @@ mod loops;
 mod occurrences;
 mod options;
 mod parameters;
+mod placement;
 mod properties;
 mod report;
 mod rules;
@@ -91,10 +92,12 @@ pub fn check(
     // Where it is let pass that components share a value, that is no fault which others come of.
     let repeated = if severities.mentions(&codes::NOT_UNIQUE) { RepeatedValues::default() } else { repeated };
 
-    // Services, references, promotions and wires; what is said of the run.
+    // Services, references, promotions and wires; what is said of the run; which node runs what.
     contracts::check(&fleet, report);
     run_settings::check(&fleet, report);
     let wiring = wiring::check(&fleet, options, report);
+
+    placement::check(&fleet, (&checks, &wiring), options, report);
 
     // Constructors, and rules of crates of components: the expensive ones.
     rules::check(&fleet, (&checks, &wiring), &repeated, (registry, options), report);

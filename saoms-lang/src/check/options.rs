@@ -27,6 +27,8 @@ pub struct Options {
     pub without_plugin_code: bool,
     /// True if the fleet is to start: a library whose code must not run is an error then.
     pub is_to_start: bool,
+    /// The node that is to run.
+    pub node: Option<Text>,
 }
 
 impl Options {

@@ -1,4 +1,5 @@
-//! What the outermost composites say of the run: where alerts are delivered, and what a lost terminal leads to.
+//! What the outermost composites say of the run: where alerts are delivered, what a lost terminal leads to, and which
+//! node is the default.
 //!
 //! What composites inside others say has no effect, so that a composite that somebody else wrote sends nothing and runs
 //! no command where it is used.
@@ -48,6 +49,9 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let hangups =
         all().filter_map(|one| Some((one, one.run.hangup?.value.name().to_owned(), one.run.hangup?.location)));
     differ("the effect of a lost terminal", hangups.collect());
+    let nodes =
+        all().filter_map(|one| one.run.default_node.as_ref().map(|node| (one, node.to_string(), node.location)));
+    differ("the default node", nodes.collect());
 }
 
 /// The settings of a fleet without errors.

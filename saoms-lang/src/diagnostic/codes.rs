@@ -154,8 +154,11 @@ codes! {
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not have the form that SCA requires.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways; only one is allowed.";
     EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace in which it has nothing, or imports a namespace that no contribution around it exports.";
-    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "An inner composite sets the target of alerts or the effect of a lost terminal; only the outermost composite can set these.";
-    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet set different targets of alerts, or different effects of a lost terminal.";
+    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "An inner composite sets the target of alerts, the effect of a lost terminal or the default node; only the outermost composite can set these.";
+    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet set different targets of alerts, effects of a lost terminal or default nodes.";
+    NODE_MISSING = "S2063" Error "node-missing": "Some components of a fleet are in a node, and others are in none: no program would run them.";
+    UNKNOWN_NODE = "S2064" Error "unknown-node": "The node that is to run does not exist in the fleet.";
+    WIRE_BETWEEN_NODES = "S2065" Error "wire-between-nodes" [OutlivesExpansion]: "A reference of a component leads to a component of another node.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has a kind of implementation that this program cannot run.";
@@ -193,6 +196,7 @@ codes! {
     MINIMUM_UNUSED = "S4016" Warning "minimum-unused" [OutlivesExpansion, WithoutEffect]: "A `minimum` has no effect: no topic triggers the component.";
     EVENT_MISMATCH = "S4017" Error "event-mismatch": "Two classes take an event of one name with different fields, or the name of an event is a reserved word of the language of a property.";
     EVENT_UNTAKEN = "S4018" Warning "event-untaken" [OutlivesExpansion, WithoutEffect, AbsentComponent]: "The text of a property has an event that no component takes.";
+    TOPIC_BETWEEN_NODES = "S4019" Error "topic-between-nodes" [Judgement, OutlivesExpansion]: "Components of different nodes use a topic, but one of them has no `url`, or they have different ones.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

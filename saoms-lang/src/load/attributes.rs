@@ -173,7 +173,7 @@ impl Loader<'_> {
             None if name == "env" => one.help(
                 "only a property of the composite has this attribute: take the value of such a property with `source`",
             ),
-            None if kind.name == "include" && matches!(name, "site" | "count") => one.help(format!(
+            None if kind.name == "include" && matches!(name, "site" | "node" | "count") => one.help(format!(
                 "only a component can have it: write `<component name=\"...\" {}=\"{}\"><implementation.composite \
                  name=\"{}\"/></component>` in place of the `include`",
                 attribute.name(),

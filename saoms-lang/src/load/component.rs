@@ -32,6 +32,7 @@ impl Loader<'_> {
             references: Vec::with_capacity(number_of("reference")),
             path: self.path(element),
             site: self.site(element),
+            node: self.own(element, "node"),
             condition: self.own(element, "if"),
             replicas: replicas.map(Box::new),
             autowire: self.boolean(element, "autowire"),

@@ -20,6 +20,7 @@ impl Loader<'_> {
             alert_token_env: self.variable(root, "alertTokenEnv"),
             alert_command: self.own(root, "alertCommand"),
             hangup: self.hangup(root),
+            default_node: self.own(root, "defaultNode"),
             written,
         };
         if let Some(token) = root.attribute_in(SAOMS_NAMESPACE, "alertTokenEnv")

@@ -26,6 +26,8 @@ pub struct ComponentElement {
     pub path: Option<Text>,
     /// `site`, in the namespace of SAOMS: the site of the component and of all that is inside it.
     pub site: Option<Text>,
+    /// `node`, in the namespace of SAOMS: the program that runs the component and all that is inside it.
+    pub node: Option<Text>,
     /// `if`, in the namespace of SAOMS: it is there only where this is true.
     pub condition: Option<Text>,
     /// Its replicas, in the namespace of SAOMS; `None` for a single component.

@@ -1,4 +1,5 @@
-//! What a composite says of the run of its fleet: where alerts are delivered, and what a lost terminal leads to.
+//! What a composite says of the run of its fleet: where alerts are delivered, what a lost terminal leads to, and which
+//! node is the default.
 
 use super::HttpAddress;
 use crate::source::{Located, Text};
@@ -45,6 +46,8 @@ pub struct RunSettings {
     pub alert_command: Option<Text>,
     /// `hangup`
     pub hangup: Option<Located<Hangup>>,
+    /// `defaultNode`
+    pub default_node: Option<Text>,
     /// Those that are written, also with a wrong value: the name with its prefix, and the place of the whole attribute.
     pub written: Vec<Text>,
 }

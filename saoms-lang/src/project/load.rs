@@ -12,7 +12,7 @@ use crate::diagnostic::Diagnostics;
 use crate::load::{self, STANDARD_INPUT, load_file, read_from};
 use crate::model::{Composite, Contribution};
 use crate::registry::Registry;
-use crate::source::{FileId, Sources};
+use crate::source::{FileId, Sources, Text};
 
 /// The path that means standard input.
 pub const INPUT: &str = "-";
@@ -20,6 +20,8 @@ pub const INPUT: &str = "-";
 pub const SET: &str = "--set";
 /// The name that diagnostics have for severities beside the files.
 pub const SEVERITY: &str = "--severity";
+/// The name that diagnostics have for the node that is to run.
+pub const NODE: &str = "--node";
 
 /// A fleet that was read and is not checked yet, with all that its composites name.
 #[derive(Debug)]
@@ -87,9 +89,11 @@ impl Project {
         let severities = self.severities.iter();
         let severities =
             severities.filter_map(|text| SeveritySetting::parse(SEVERITY, text, sources, diagnostics)).collect();
+        let node = self.node.as_ref().map(|node| Text::part_of(sources.add(NODE, node), node, node));
         Options {
             settings,
             severities,
+            node,
             assume_classes: self.assume_classes,
             wiring: self.wiring,
             without_plugin_code: self.without_plugin_code,

@@ -29,7 +29,7 @@ pub use classes::{ClassPath, Classes, LibraryResolver, PluginFault};
 pub use compilation::Compilation;
 pub use document::{Refused, composite_files, document};
 pub use each::{Compilations, FleetOutput};
-pub use load::{INPUT, Loaded, SET, SEVERITY, read};
+pub use load::{INPUT, Loaded, NODE, SET, SEVERITY, read};
 
 /// The composites of a fleet, and how they are to be checked.
 ///
@@ -61,6 +61,7 @@ pub struct Project {
     wiring: bool,
     without_plugin_code: bool,
     is_to_start: bool,
+    node: Option<String>,
     is_part: bool,
     in_memory: bool,
 }
@@ -95,6 +96,7 @@ impl Project {
             wiring: false,
             without_plugin_code: false,
             is_to_start: false,
+            node: None,
             is_part: false,
             in_memory: false,
         }
@@ -213,6 +215,13 @@ impl Project {
     #[must_use]
     pub fn to_start(self) -> Self {
         Self { is_to_start: true, ..self }
+    }
+
+    /// Takes it that the fleet is to run in this node alone, which it has to have: see [`Assembly::at`]. All of it is
+    /// checked.
+    #[must_use]
+    pub fn node(self, node: Option<String>) -> Self {
+        Self { node, ..self }
     }
 
     /// Takes it that composites elsewhere may use those of the fleet: what these leave to their users is no fault.

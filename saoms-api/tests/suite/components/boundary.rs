@@ -457,6 +457,7 @@ fn a_rule_finds_the_same_behind_the_boundary() {
         period: Some(Duration::from_millis(50)),
         starts: true,
         restarts: false,
+        node: "",
         has_broker: true,
         renamed: &[("A", "a"), ("B", "b")],
         wires: &[("adder", 1)],

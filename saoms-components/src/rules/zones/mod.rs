@@ -1,6 +1,7 @@
 //! Rule: zones do not fit each other, the map or the robots.
 
 pub(super) mod corridors;
+pub(super) mod nodes;
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};

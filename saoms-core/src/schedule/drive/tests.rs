@@ -92,6 +92,7 @@ fn component(path: &str, registry: &Registry) -> ComponentSpec {
     ComponentSpec {
         path: path.to_owned(),
         site: Default::default(),
+        node: Default::default(),
         class: Arc::clone(registry.get(path).unwrap()),
         library: None,
         values: Vec::new(),

@@ -123,6 +123,8 @@ pub(crate) struct Member<'a> {
     pub(crate) is_partial: bool,
     /// The site, with those around it; empty outside all sites.
     pub(crate) site: SmolStr,
+    /// The node that runs it; empty where none is named.
+    pub(crate) node: SmolStr,
     /// The fault of having the name of an earlier one.
     pub(crate) repeated: Option<Faulty>,
     /// Its path, where that is more than its name.

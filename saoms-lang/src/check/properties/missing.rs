@@ -57,7 +57,7 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
 /// Where a property belongs that is one of another class of the fleet, or an attribute of SAOMS.
 fn belongs_elsewhere(property: &Property, giver: &Giver<'_, '_>) -> Option<String> {
     let name = property.name.as_str();
-    if ["count", "from", "overrides", "site", "if"].contains(&name) {
+    if ["count", "from", "overrides", "site", "node", "if"].contains(&name) {
         let value = property.simple_value().map_or("...", |value| value.value.as_str());
         return Some(format!("write it in the start tag of the component: `saoms:{name}=\"{value}\"`"));
     }

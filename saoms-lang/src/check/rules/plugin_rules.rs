@@ -222,7 +222,9 @@ impl<'s, 'f> Facts<'s, 'f> {
                 period: check.task.as_ref().map(|task| task.period),
                 starts: check.task.as_ref().is_none_or(|task| task.run_on_startup),
                 restarts: check.task.as_ref().is_some_and(|task| task.restarts() > 0),
-                has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
+                node: &fleet.members[place].node,
+                has_broker: fleet.members[place].node.is_empty()
+                    && check.task.as_ref().is_some_and(|task| task.url.is_some()),
                 renamed,
                 wires,
             });

@@ -12,6 +12,7 @@ use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::expression::{has_expression, render};
 use crate::model::{ComponentElement, Naming};
+use crate::source::{Location, Text};
 use crate::syntax::{Element, is_local_name};
 
 impl<'a> Unfolding<'a, '_, '_> {
@@ -33,6 +34,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             || instance.is_some_and(|instance| instance.partial.is_some())
             || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
         let site = self.site(component, unit, owner);
+        let node = self.node(component, unit, owner);
         let own = component.path.as_ref();
         let path = match owner.map(|owner| self.fleet.members[owner].path()) {
             Some(around) => Some(format!("{around}/{}", own.unwrap_or(&component.name))),
@@ -50,6 +52,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             is_absent: !is_seen,
             is_partial,
             site,
+            node,
             repeated: None,
             path,
         });
@@ -93,19 +96,9 @@ impl<'a> Unfolding<'a, '_, '_> {
     /// reported.
     fn site(&mut self, component: &ComponentElement, unit: usize, owner: Option<usize>) -> SmolStr {
         let around = owner.map(|owner| self.fleet.members[owner].site.clone()).unwrap_or_default();
-        let Some(written) = &component.site else { return around };
-        let mut own = Cow::Borrowed(written.as_str());
-        // Replicas have their texts without expressions; a component that stands for faulty ones may keep some.
-        if has_expression(written) {
-            let names = self.names(unit);
-            match render(written, &mut |name| names.value(name)) {
-                Ok(value) => own = value.into(),
-                Err(faults) => {
-                    self.faults(&names, &[(written.clone(), faults)]);
-                    return around;
-                }
-            }
-        }
+        let Some((written, own)) = component.site.as_ref().and_then(|site| self.rendered(site, unit)) else {
+            return around;
+        };
         // A colon ends the site of an event from outside.
         let is_wrong = |sign: char| sign.is_whitespace() || matches!(sign, ':' | '$');
         if own.split('/').any(|name| name.is_empty() || name.contains(is_wrong)) {
@@ -118,6 +111,50 @@ impl<'a> Unfolding<'a, '_, '_> {
             return around;
         }
         if around.is_empty() { own.into() } else { format!("{around}/{own}").into() }
+    }
+
+    /// The node of a component: its own, or that of its `owner`, the component around it, or that of the outermost
+    /// composite. One that is no name is reported.
+    fn node(&mut self, component: &ComponentElement, unit: usize, owner: Option<usize>) -> SmolStr {
+        let around = match owner {
+            Some(owner) => self.fleet.members[owner].node.clone(),
+            None => self.default_node(),
+        };
+        let Some((written, own)) = component.node.as_ref().and_then(|node| self.rendered(node, unit)) else {
+            return around;
+        };
+        if is_local_name(&own) {
+            return own.into();
+        }
+        let one = not_a_node(&own, written.location);
+        self.report.push(match own.strip_prefix('$').filter(|name| is_local_name(name)) {
+            Some(name) => one.replace(&own, written.location, &format!("${{{name}}}")),
+            None => one,
+        });
+        around
+    }
+
+    /// The default node of the composites that were asked for.
+    fn default_node(&self) -> SmolStr {
+        let mut named = self.fleet.contribution.asked_for().iter().filter_map(|one| one.run.default_node.as_ref());
+        named.find(|name| is_local_name(name)).map(|name| name.value.clone()).unwrap_or_default()
+    }
+
+    /// The text of an attribute of a component with what its expressions come to; `None` where one is faulty, which is
+    /// reported.
+    fn rendered<'t>(&mut self, written: &'t Text, unit: usize) -> Option<(&'t Text, Cow<'t, str>)> {
+        // Replicas have their texts without expressions; a component that stands for faulty ones may keep some.
+        if !has_expression(written) {
+            return Some((written, Cow::Borrowed(written.as_str())));
+        }
+        let names = self.names(unit);
+        match render(written, &mut |name| names.value(name)) {
+            Ok(value) => Some((written, value.into())),
+            Err(faults) => {
+                self.faults(&names, &[(written.clone(), faults)]);
+                None
+            }
+        }
     }
 
     fn repeated(&mut self, component: &ComponentElement, first: usize) {
@@ -142,6 +179,13 @@ impl<'a> Unfolding<'a, '_, '_> {
             _ => one.help("give each its own name"),
         });
     }
+}
+
+/// The fault of a text that cannot be the name of a node.
+pub(crate) fn not_a_node(text: &str, at: Location) -> Diagnostic {
+    let message = format!("{} is not the name of a node", quoted(text));
+    Diagnostic::new(&codes::ATTRIBUTE_VALUE, at, message)
+        .help("write a name such as `gate-a`: letters, digits, `-`, `_` and `.`, a letter or `_` first")
 }
 
 /// True if two elements say the same in the same words, however they are laid out.

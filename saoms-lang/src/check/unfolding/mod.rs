@@ -4,7 +4,7 @@
 pub(crate) mod append_list;
 pub(crate) mod conditions;
 mod inner;
-mod members;
+pub(crate) mod members;
 mod names;
 pub(crate) mod remove_absent;
 pub(crate) mod replica_expansion;
@@ -251,7 +251,9 @@ impl<'a> Unfolding<'a, '_, '_> {
         let is_again = self.fleet.units[unit].composites.iter().any(|known| std::ptr::eq(*known, composite));
         // What makes no copy of it is reported.
         let element = include.origin.element(&around.document);
-        if is_again && ["site", "count"].iter().any(|name| element.attribute_in(SAOMS_NAMESPACE, name).is_some()) {
+        if is_again
+            && ["site", "node", "count"].iter().any(|name| element.attribute_in(SAOMS_NAMESPACE, name).is_some())
+        {
             return;
         }
         if is_again {

@@ -237,12 +237,14 @@ attributes! {
     FROM = known "from" Number: "The index of the first replica. The default is 1.";
     OVERRIDES = known "overrides" Table: "A CSV table beside the composite, with a row for each replica that differs and a column for each property that differs.";
     SITE = known "site" Text: "The site of the component and of everything inside it. The names of its topics start with the name of the site, as in `North/orders`; IDs and numbers must be unique only within a site.";
+    NODE = known "node" Text: "The node that runs the component and everything inside it: `saoms run --node` runs the components of one node. An inner component with a node of its own is in that one.";
     IF = known "if" Condition: "The condition for including this element: a comparison of properties of the composite, such as `robots > 10 and site == 'north'`.";
     ENV = known "env" Variable: "The environment variable that gives the value, if it is set and neither `--set` nor a component gives one.";
     ALERT_URL = known "alertUrl" Uri: "The address that each change of an alert is sent to, as an HTTP POST of JSON: `http://host:port/path`. `saoms run` sends with `--alerts` alone.";
     ALERT_TOKEN_ENV = known "alertTokenEnv" Variable: "The environment variable with the token for the address of `alertUrl`, which is sent as `Authorization: Bearer ...`. The token itself is in no composite.";
     ALERT_COMMAND = known "alertCommand" Text: "The command of the shell that is run for each change of an alert, in the folder of the composite; it reads the change as JSON. `saoms run` runs it with `--alerts` alone.";
     HANGUP = known "hangup" Hangup: "What a lost terminal (SIGHUP) leads to: `end`, the default, ends the run; `hold` stops all that moves until it is released, as `saoms estop` does; `goOn` changes nothing. SIGTERM always ends the run.";
+    DEFAULT_NODE = known "defaultNode" Text: "The node of the components that are in no other one (`saoms:node`).";
 }
 
 /// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that
@@ -252,11 +254,13 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("composite", ALERT_TOKEN_ENV),
     ("composite", ALERT_COMMAND),
     ("composite", HANGUP),
+    ("composite", DEFAULT_NODE),
     ("component", PATH),
     ("component", COUNT),
     ("component", FROM),
     ("component", OVERRIDES),
     ("component", SITE),
+    ("component", NODE),
     ("component", IF),
     ("include", IF),
     ("wire", IF),

@@ -12,6 +12,7 @@ mod mistakes;
 mod mutations;
 mod names;
 mod namespaces;
+mod placement;
 mod policies;
 mod report;
 mod run_settings;

@@ -112,6 +112,10 @@ fn example(code: &Code) -> Result<String, String> {
             let found = Project::new().file(path).compile(&registry());
             without_folder(found.diagnostics, &found.sources, folder.path())
         }
+        "S2064" => {
+            let text = fs::read_to_string(folder().join("S2064.composite")).unwrap();
+            compiled(&Project::new().in_memory().text("fleet.composite", text).node(Some("gate_a".to_owned())))
+        }
         "S3016" => {
             let mut registry = Registry::new();
             let declaration = r#"{"contract": 1, "class": "example.Gps", "kind": "passive"}"#;
