@@ -113,6 +113,10 @@ impl Observer for TopicWatch {
         Interest::NONE
     }
 
+    fn hears_others(&self) -> bool {
+        true
+    }
+
     fn message(&self, sent: &SentMessage) {
         let watched = self.lock();
         let Some(one) = watched.get(&*sent.topic) else { return };

@@ -10,9 +10,9 @@ use saoms_api::host::cdr;
 
 use super::exchange::wire::Vote;
 use super::exchange::{Action, Arrived, Destination, Exchange, News, OwnMessage, Settings};
-use super::key;
 use super::port::{Frame, FromRun, Port, Waiting};
 use super::transport::TransportSession;
+use super::{FROM_OUTSIDE, key};
 
 /// Tokens of subscriptions.
 const ALIVE: u64 = 1;
@@ -86,8 +86,10 @@ impl Client {
             unsent: VecDeque::new(),
             start: Instant::now(),
             next: 0,
+            program,
             patience,
             done_since: None,
+            has_told_who_lacks: false,
         };
         let own = Arc::clone(port);
         let thread = std::thread::Builder::new().name("saoms-network".to_owned());
@@ -121,10 +123,13 @@ struct Member<F> {
     start: Instant,
     /// When the exchange has something to do.
     next: u64,
+    program: u64,
     /// Time without a sign of life after which a program is missed, in nanoseconds: news are everywhere by then.
     patience: u64,
     /// Time since which no program sees work left.
     done_since: Option<u64>,
+    /// True if it was told that programs are waited for.
+    has_told_who_lacks: bool,
 }
 
 impl<F: Fleet> Member<F> {
@@ -153,6 +158,17 @@ impl<F: Fleet> Member<F> {
     /// Lets the run end when no program has seen work left for so long that messages on their way have arrived.
     fn agree(&mut self, now: u64) {
         self.exchange.vote(self.fleet.vote());
+        if let Some(unheard) = self.exchange.waits_for()
+            && !std::mem::replace(&mut self.has_told_who_lacks, true)
+        {
+            let names: Vec<String> = unheard.iter().map(|name| format!("`{name}`")).collect();
+            let (nodes, have) = if names.len() == 1 { ("node", "has") } else { ("nodes", "have") };
+            let text = format!(
+                "no work is left, but {nodes} {} {have} not been there yet: the program waits for them",
+                names.join(", ")
+            );
+            self.fleet.tell(Level::Warning, text);
+        }
         let is_done = self.exchange.is_done() && self.exchange.is_complete() && self.undelivered.is_empty();
         let since = self.done_since.filter(|_| is_done);
         self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
@@ -207,7 +223,11 @@ impl<F: Fleet> Member<F> {
                 }
                 self.exchange.read(&topic, is_state, schema);
             }
-            FromRun::Message { topic, component, to, is_state, schema, message } => {
+            FromRun::Message { topic, mut component, to, is_state, schema, message } => {
+                if &*component == FROM_OUTSIDE {
+                    // What comes from outside to two programs comes from two senders.
+                    component = format!("{component} {:x}", self.program).into();
+                }
                 let sent = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
                 self.exchange.send(OwnMessage {
                     topic: &topic,

@@ -10,6 +10,9 @@ pub mod key;
 mod port;
 pub mod transport;
 
+/// The component that messages come from which no component of the fleet sends. A program adds its number.
+pub(crate) const FROM_OUTSIDE: &str = "(outside)";
+
 pub use client::{Client, Fleet, FromNetwork};
 pub(crate) use port::FromRun;
 pub use port::Port;

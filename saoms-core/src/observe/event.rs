@@ -221,15 +221,17 @@ impl fmt::Display for RunEvent {
     }
 }
 
-/// A message that a component sent.
+/// A message that was sent.
 #[derive(Clone, Debug)]
 pub struct SentMessage {
     /// The topic, by the name that it has after renaming.
     pub topic: Arc<str>,
     /// The path of the component that sent it.
     pub component: Arc<str>,
-    /// The message; its header says when it was sent.
+    /// The message; its header says when it was sent, or arrived from another program.
     pub message: SharedMessage,
+    /// True if it came from another program: only observers that [hear others](super::Observer::hears_others) get it.
+    pub is_of_other: bool,
 }
 
 /// The progress of a run.

@@ -41,6 +41,11 @@ pub trait Observer: Send + Sync + 'static {
         false
     }
 
+    /// True if messages of components of other programs are wanted, too.
+    fn hears_others(&self) -> bool {
+        false
+    }
+
     /// A component sent a message on a topic that is wanted. Messages without a reader are included.
     fn message(&self, sent: &SentMessage) {
         let _ = sent;
@@ -188,7 +193,9 @@ impl Observers {
 
     pub(crate) fn message(&self, sent: &SentMessage, observers: &[u32]) {
         for (observer, _) in observers.iter().filter_map(|number| self.all.get(*number as usize)) {
-            contained(|| observer.message(sent));
+            if !sent.is_of_other || observer.hears_others() {
+                contained(|| observer.message(sent));
+            }
         }
     }
 

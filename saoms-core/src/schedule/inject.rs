@@ -19,12 +19,13 @@ use super::topics::takers::{EventMessage, RaiseError};
 use crate::bus::{Bus, TopicId};
 use crate::fault::TimedFault;
 use crate::journal::{FROM_OUTSIDE, JournalEntry};
+use crate::network;
 use crate::observe::{Notification, Occurrence, SentMessage};
 
 /// The number of the sender of messages from outside.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 /// The name of that sender, which no component can have.
-pub(super) const OUTSIDE_NAME: &str = "(outside)";
+pub(super) const OUTSIDE_NAME: &str = network::FROM_OUTSIDE;
 
 /// True for the name under which the journal has what came from outside the fleet.
 pub fn is_from_outside(component: &str) -> bool {
@@ -279,7 +280,7 @@ pub(super) fn add_fault(
         if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
             return Err(RaiseError::Ending);
         }
-        engine.slots.iter().filter(|slot| slot.is_member()).map(|slot| Arc::clone(&slot.spec)).collect()
+        engine.members_everywhere().map(|(_, spec)| spec).collect()
     };
     let of_site = members.iter().map(AsRef::as_ref).filter(|spec| site.is_empty() || spec.site == site);
     fault_subjects(of_site).check(call).map_err(RaiseError::Wrong)?;
@@ -328,7 +329,8 @@ impl Engine {
                 Due::Message { topic, bytes, key, place, text } => {
                     // In real time the timer may be late; the message has the time at which it was due.
                     let cause = self.record_outside(when, OUTSIDE_NAME, text);
-                    self.deliver_injection(when, cause, topic, (bytes, key, place), None);
+                    let outside = Arc::from(OUTSIDE_NAME);
+                    self.deliver_injection((when, &outside), cause, topic, (bytes, key, place), None);
                     delivered = true;
                 }
                 Due::Event { messages, text } => {
@@ -400,12 +402,13 @@ impl Engine {
 
     fn deliver_event(&mut self, time: u64, messages: Vec<EventMessage>, text: String) {
         let cause = self.record_outside(time, OUTSIDE_NAME, text.clone());
+        let outside = Arc::from(OUTSIDE_NAME);
         let mut is_heard = false;
         for EventMessage { topic, to, bytes, marks } in messages {
             // A component that is not scheduled reads no topic.
             let Some(topic) = self.bus.find(&topic) else { continue };
             is_heard = true;
-            self.deliver_injection(time, cause, topic, (bytes, marks.0, marks.1), to);
+            self.deliver_injection((time, &outside), cause, topic, (bytes, marks.0, marks.1), to);
         }
         if !is_heard {
             let text = format!("the event `{text}` has no receiver: no component that takes it is scheduled");
@@ -413,9 +416,10 @@ impl Engine {
         }
     }
 
+    /// Sends a message that no component of the fleet sends. Other programs receive it as one of `by`.
     pub(super) fn deliver_injection(
         &mut self,
-        time: u64,
+        (time, by): (u64, &Arc<str>),
         cause: Cause,
         topic: TopicId,
         (bytes, key, place): (Vec<u8>, Option<u64>, Option<(i32, i32)>),
@@ -429,9 +433,10 @@ impl Engine {
         }
         if let Some(observers) = self.bus.observers(topic) {
             let component = Arc::from(OUTSIDE_NAME);
-            let sent = SentMessage { topic: name, component, message: message.clone() };
+            let sent = SentMessage { topic: name, component, message: message.clone(), is_of_other: false };
             self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
         }
+        self.put_on_networks(by, topic, &message);
         self.send(topic, message, time);
     }
 

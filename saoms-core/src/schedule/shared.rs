@@ -8,7 +8,7 @@ use saoms_api::Time;
 use super::drive::pulse::Pulse;
 use super::engine::Engine;
 use super::names::SlotNames;
-use super::networks::RemoteNames;
+use super::networks::elsewhere::RemoteNames;
 use super::os::clock::Clock;
 use super::os::sys::Gate;
 use super::settings::Settings;
@@ -29,7 +29,7 @@ pub(super) struct Shared {
     /// The paths of components by their numbers.
     pub(super) names: SlotNames,
     /// The paths of components of other programs.
-    pub(super) remote_names: RemoteNames,
+    pub(super) remote_names: Arc<RemoteNames>,
     /// Functions that stop hardware.
     pub(super) stops: Arc<Stops>,
     /// Lock of changes of the fleet: one at a time.
@@ -80,10 +80,10 @@ impl Shared {
         Shared {
             stops: Arc::clone(&engine.stops),
             executions: Arc::clone(&engine.executions),
-            engine: Mutex::new(engine),
             sections: Mutex::new(Sections::with_registered_counts()),
             names: SlotNames::default(),
-            remote_names: RemoteNames::default(),
+            remote_names: engine.networks.elsewhere.names(),
+            engine: Mutex::new(engine),
             changes: Mutex::default(),
             returned: Condvar::new(),
             settings,
@@ -172,8 +172,7 @@ impl Shared {
             if let Some(known) = &engine.takers.0 {
                 return Arc::clone(known);
             }
-            let members = engine.slots.iter().zip(0..).filter(|(slot, _)| slot.is_member());
-            (members.map(|(slot, number)| (number, Arc::clone(&slot.spec))).collect::<Vec<_>>(), engine.takers.1)
+            (engine.members_everywhere().collect::<Vec<_>>(), engine.takers.1)
         };
         let takers = Arc::new(Takers::of(members.into_iter()));
         let mut engine = self.lock();
@@ -190,8 +189,7 @@ impl Shared {
             if let Some(known) = &engine.speakers {
                 return Arc::clone(known);
             }
-            let members = engine.slots.iter().filter(|slot| slot.is_member());
-            (members.map(|slot| Arc::clone(&slot.spec)).collect::<Vec<_>>(), engine.takers.1)
+            (engine.members_everywhere().map(|(_, spec)| spec).collect::<Vec<_>>(), engine.takers.1)
         };
         let speakers = Arc::new(Speakers::of(members.into_iter()));
         let mut engine = self.lock();

@@ -12,7 +12,7 @@ use crate::registry::RegisteredClass;
 
 /// Shows the components of a site, or all where its name is empty, to somebody who judges them.
 pub fn seen<R>(assembly: &Assembly, site: &str, judge: impl FnOnce(&FleetView<'_>) -> R) -> R {
-    let all = assembly.components.iter().enumerate();
+    let all = assembly.all().enumerate();
     let seen: Vec<(usize, &ComponentSpec)> =
         all.filter(|(_, spec)| site.is_empty() || spec.site.as_str() == site).collect();
     let indices: HashMap<usize, usize> = seen.iter().map(|(place, _)| *place).zip(0..).collect();

@@ -47,7 +47,7 @@ impl Known {
     }
 
     fn subjects(&self, site: &str) -> FaultSubjects {
-        fault_subjects(self.assembly.components.iter().filter(|spec| site.is_empty() || spec.site == *site))
+        fault_subjects(self.assembly.all().filter(|spec| site.is_empty() || spec.site == *site))
     }
 
     /// Judges what a line says of the fleet, whatever is drawn of its ranges.

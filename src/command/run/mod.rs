@@ -75,6 +75,11 @@ pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
 
+    /// Run only the components of this node (`saoms:node`): those of the other nodes run in other programs. All of the
+    /// fleet is checked
+    #[arg(long, value_name = "NAME", conflicts_with = "virtual_time")]
+    pub(crate) node: Option<String>,
+
     /// The format of diagnostics: for people on standard error, or as one JSON object on standard output (on standard
     /// error once a fleet runs)
     #[arg(long, value_enum, default_value_t = Format::Human)]
@@ -307,6 +312,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let watch = arguments.invariants.then(|| Arc::new(InvariantWatch::default()));
     observers.extend(watch.clone().map(|watch| watch as Arc<dyn Observer>));
     let mut notes = Vec::new();
+    let whole = all_nodes(arguments, &assembly);
     let control = match Control::of(arguments, &mut notes) {
         Ok(control) => control,
         Err(exit) => return exit,
@@ -319,6 +325,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         signals.reaches(handle);
         delivery.start(handle);
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
+        whole.into_iter().for_each(|note| handle.note(Level::Info, note));
         // A run that has not begun does not end, and only one in virtual time has a speed.
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
@@ -397,8 +404,10 @@ const PAGER_PATIENCE: Duration = Duration::from_secs(60);
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Vec<PathBuf>)> {
     let languages = EventLanguage::linked().filter(|_| arguments.events.is_some());
     let settled: Vec<String> = languages.flat_map(|one| one.settles).map(|code| format!("{code}=allow")).collect();
-    let compilation =
-        compiled(files, |project, classes| project.severities(settled).to_start().compile(classes)).ok()?;
+    let compilation = compiled(files, |project, classes| {
+        project.severities(settled).node(arguments.node.clone()).to_start().compile(classes)
+    });
+    let compilation = compilation.ok()?;
     let shown = DiagnosticReport::from(&compilation);
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &compilation.output) {
@@ -414,7 +423,11 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.iter().chain(&arguments.faults).cloned());
     let assembly = compilation.output?;
-    has_components(&assembly, "run").then_some((assembly, read))
+    if !has_components(&assembly, "run") {
+        return None;
+    }
+    let assembly = arguments.node.iter().fold(assembly, |whole, node| whole.at(node));
+    Some((assembly, read))
 }
 
 fn seed(text: &str) -> Result<u64, String> {
@@ -432,6 +445,14 @@ fn settings(arguments: &RunArguments) -> Settings {
         grace: arguments.grace,
         ..Settings::default()
     }
+}
+
+/// What is said of a fleet that could run in several programs, and runs in this one.
+fn all_nodes(arguments: &RunArguments, assembly: &Assembly) -> Option<String> {
+    let nodes = assembly.nodes();
+    let is_whole = arguments.node.is_none() && !arguments.virtual_time && nodes.len() > 1;
+    let names: Vec<String> = nodes.keys().map(|node| format!("`{node}`")).collect();
+    is_whole.then(|| format!("all nodes run in this program, {}: `--node` runs one of them alone", names.join(", ")))
 }
 
 /// The names of the composites.

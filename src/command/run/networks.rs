@@ -13,7 +13,7 @@ use saoms_core::network::exchange::Settings;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession};
 use saoms_core::network::{Client, Port};
 use saoms_core::schedule::{Handle, StartError};
-use saoms_lang::assembly::{Assembly, TaskProperties};
+use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 use super::{RunArguments, title};
 use crate::Exit;
@@ -45,6 +45,8 @@ struct Network {
     transport: Transport,
     /// The components on it.
     components: BTreeSet<String>,
+    /// The other nodes of the fleet that are on it.
+    others: BTreeSet<String>,
     settings: SessionSettings,
 }
 
@@ -56,7 +58,7 @@ impl Networks {
     pub(super) fn of(arguments: &RunArguments, assembly: &Assembly) -> Result<Networks, Exit> {
         let mut networks = Networks {
             all: Vec::new(),
-            name: title(arguments),
+            name: arguments.node.clone().unwrap_or_else(|| title(arguments)),
             patience: LEAST_PATIENCE,
             wait: arguments.limit,
             notes: Vec::new(),
@@ -83,7 +85,8 @@ impl Networks {
                 Ok(transport) => {
                     let (user, password) = (user.map(str::to_owned), password.map(str::to_owned));
                     let settings = SessionSettings { url: url.to_owned(), listen, user, password, tls: None };
-                    networks.all.push(Network { transport, components: components(assembly, url), settings });
+                    let components = components(assembly, url);
+                    networks.all.push(Network { transport, components, others: others(assembly, url), settings });
                 }
                 Err(error @ TransportError::Missing { .. }) if listen => networks.notes.push(format!(
                     "the topics of `{url}` are served inside this program, and no other program can join them: {error}"
@@ -108,7 +111,7 @@ impl Networks {
             handle.note(Level::Warning, note);
         }
         let mut clients = Vec::new();
-        for Network { transport, components, settings } in self.all {
+        for Network { transport, components, others, settings } in self.all {
             let port: Arc<Port> = Arc::default();
             let wait = Wait { longest: self.wait, is_over: &is_over };
             let Some(session) = opened(transport, &settings, &port, handle, &wait)? else { break };
@@ -119,6 +122,7 @@ impl Networks {
                 patience: u64::try_from(self.patience.as_nanos()).unwrap_or(u64::MAX),
                 limit: LIMIT,
                 components,
+                others,
             };
             let client = Client::start(session, &port, member, fleet);
             clients.push(client.map_err(|error| StartError::Network { url: settings.url.clone(), error })?);
@@ -171,11 +175,18 @@ fn opened(
     }
 }
 
-/// The components of a network.
+/// The components of this program that are on a network.
 fn components(assembly: &Assembly, url: &str) -> BTreeSet<String> {
-    let is_on = |task: &TaskProperties| task.url.as_deref() == Some(url);
-    let on = assembly.components.iter().filter(|spec| spec.task.as_ref().is_some_and(is_on));
-    on.map(|spec| spec.path.to_string()).collect()
+    on(&assembly.components, url).map(|spec| spec.path.clone()).collect()
+}
+
+/// The other nodes of the fleet that have components on a network.
+fn others(assembly: &Assembly, url: &str) -> BTreeSet<String> {
+    on(&assembly.elsewhere, url).map(|spec| spec.node.to_string()).collect()
+}
+
+fn on<'s>(specs: &'s [ComponentSpec], url: &str) -> impl Iterator<Item = &'s ComponentSpec> {
+    specs.iter().filter(move |spec| spec.task.as_ref().is_some_and(|task| task.url.as_deref() == Some(url)))
 }
 
 /// The addresses of the routers of an assembly.

@@ -37,6 +37,8 @@ struct Watcher {
     handle: Handle,
     /// The paths of all components, in the order of the assembly.
     components: Vec<String>,
+    /// The node that runs; empty for the whole fleet.
+    node: String,
     files: BTreeMap<PathBuf, FileStamps>,
     /// Components that have to be asked again.
     waiting: Vec<ComponentSpec>,
@@ -60,6 +62,7 @@ impl Reload {
         let watcher = Watcher {
             arguments: arguments.clone(),
             components: assembly.components.clone(),
+            node: assembly.node.clone(),
             files: assembly.files.iter().map(known).collect(),
             waiting: Vec::new(),
             asked: Instant::now(),
@@ -77,6 +80,8 @@ impl Reload {
 pub(crate) struct Watched {
     components: Vec<String>,
     files: Vec<PathBuf>,
+    /// The node that runs; empty for the whole fleet.
+    node: String,
 }
 
 impl Watched {
@@ -85,7 +90,7 @@ impl Watched {
         let mut files: Vec<PathBuf> = components.flat_map(origins).map(Path::to_owned).collect();
         files.sort();
         files.dedup();
-        Watched { components: paths(assembly), files }
+        Watched { components: paths(assembly), files, node: assembly.node.to_string() }
     }
 
     /// True if there is no library.
@@ -131,10 +136,12 @@ impl Watcher {
         let Ok(compilation) = compiled(&self.arguments, |project, classes| project.to_start().compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
-        let Some(assembly) = &compilation.output else {
+        let Some(whole) = &compilation.output else {
             eprint_coloured(&DiagnosticReport::from(&compilation).human(Severity::Error));
             return self.handle.note(Level::Error, kept("the composites do not match it"));
         };
+        let part = (!self.node.is_empty()).then(|| whole.clone().at(&self.node));
+        let assembly = part.as_ref().unwrap_or(whole);
         if paths(assembly) != self.components {
             return self.handle.note(
                 Level::Error,

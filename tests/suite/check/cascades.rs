@@ -53,7 +53,7 @@ fn some(all: &[usize], seed: usize) -> impl Iterator<Item = usize> {
 fn one_slip_gives_few_diagnostics() {
     let registry = Registry::linked().unwrap();
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    let (mut worst, mut seed) = (String::new(), 0);
+    let (mut worst, mut seed) = (String::new(), 1);
     for path in shipped() {
         let text = fs::read_to_string(&path).unwrap();
         let check = |text: &str| {

@@ -3,6 +3,7 @@
 mod broken;
 mod foreign;
 mod lines;
+mod nodes;
 mod programs;
 mod proxy;
 mod together;

@@ -100,8 +100,23 @@ impl Programs {
              name=\"{name}\">\n{components}</composite>\n"
         );
         let file = format!("{name}.composite");
-        fs::write(self.folder.path().join(&file), composite).unwrap();
-        let mut run = command(&["run", &file, "--grace", "10s"]);
+        self.write(&file, &composite);
+        self.run(name, &["run", &file])
+    }
+
+    /// Writes a file that programs can name.
+    pub(super) fn write(&self, file: &str, text: &str) {
+        fs::write(self.folder.path().join(file), text).unwrap();
+    }
+
+    /// Reads a file that a program wrote.
+    pub(super) fn read(&self, file: &str) -> String {
+        fs::read_to_string(self.folder.path().join(file)).unwrap()
+    }
+
+    /// Starts a program with these arguments.
+    pub(super) fn run(&self, name: &str, arguments: &[&str]) -> Arc<Program> {
+        let mut run = command(&[arguments, &["--grace", "10s"]].concat());
         run.current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
         let transport = library(if self.transport == Transport::Relay { "saoms_relay" } else { "saoms_zenoh" });
         for library in [transport, build::library("numbers")] {

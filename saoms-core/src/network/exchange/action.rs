@@ -18,6 +18,8 @@ pub struct Settings {
     pub limit: usize,
     /// The components of this program that are on the network: their paths.
     pub components: BTreeSet<String>,
+    /// The names of programs without which no work is done: those of the other nodes of the fleet.
+    pub others: BTreeSet<String>,
 }
 
 /// Where something is put for.

@@ -30,6 +30,7 @@ impl Exchange {
             if alive.leaves || self.peers.len() >= MOST_PROGRAMS {
                 return;
             }
+            self.unheard.remove(&alive.name);
             let name = Arc::from(alive.name.as_str());
             self.actions.push(Action::Tell(News::Joined { program, name }));
             self.say_soon();

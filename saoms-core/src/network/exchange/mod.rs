@@ -79,6 +79,8 @@ pub struct Exchange {
     vote: Vote,
     /// True if a program that has left had seen that all work is done.
     was_done: bool,
+    /// The names of programs that were never heard, and without which no work is done.
+    unheard: BTreeSet<String>,
     /// The present time, and the time at which the exchange began.
     now: u64,
     begun: u64,
@@ -95,6 +97,7 @@ impl Exchange {
     /// A program that joins a network.
     pub fn new(settings: Settings) -> Exchange {
         Exchange {
+            unheard: settings.others.clone(),
             settings,
             outgoing: BTreeMap::new(),
             reads: BTreeMap::new(),
@@ -252,8 +255,18 @@ impl Exchange {
         }
     }
 
-    /// True if some program has seen that all work is done, and no program that is there sees work left.
+    /// The programs that no work can be done without, and that were never there, if nothing else is left to do.
+    pub fn waits_for(&self) -> Option<&BTreeSet<String>> {
+        Some(&self.unheard).filter(|unheard| !unheard.is_empty() && self.is_agreed())
+    }
+
+    /// True if some program has seen that all work is done, no program that is there sees work left, and all that the
+    /// fleet needs have been there.
     pub fn is_done(&self) -> bool {
+        self.unheard.is_empty() && self.is_agreed()
+    }
+
+    fn is_agreed(&self) -> bool {
         let there = self.peers.values().filter(|peer| peer.is_reachable).map(|peer| peer.vote);
         let mut is_done = self.was_done;
         for vote in there.chain([self.vote]) {

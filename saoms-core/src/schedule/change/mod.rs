@@ -40,7 +40,8 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, C
     let _one_at_a_time = shared.lock_changes();
     let current = shared.lock().specs();
     let wanted: Vec<_> = {
-        let engine = shared.lock();
+        let mut engine = shared.lock();
+        engine.networks.elsewhere.know(wanted.elsewhere);
         wanted.components.into_iter().map(|spec| Some(Arc::new(engine.still_stopped(spec)))).collect()
     };
     let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));

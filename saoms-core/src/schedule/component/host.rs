@@ -104,12 +104,18 @@ impl Host for ComponentHost<'_> {
         self.may_use(topic.name, TopicUse::Publish)?;
         let name = self.spec().topic(topic.name);
         let observers = self.shared.observers.of_topic(&name, topic);
-        let bus = &mut self.shared.lock().bus;
+        let mut engine = self.shared.lock();
+        let bus = &mut engine.bus;
         self.is_as_declared(topic, TopicUse::Publish, bus.find(&name).is_none())?;
         let id = bus
             .publisher(&name, topic, &self.part.name)
             .map_err(|mismatch| self.differs(topic, TopicUse::Publish, mismatch))?;
         bus.observe(id, &observers);
+        let network = engine.slots[self.part.index as usize].network;
+        if network != NO_NETWORK {
+            engine.use_on_network(network, id);
+        }
+        drop(engine);
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
     }

@@ -78,7 +78,7 @@ impl Engine {
             }
             if let Some(observers) = self.bus.observers(topic) {
                 let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(name));
-                let sent = SentMessage { topic, component, message: message.clone() };
+                let sent = SentMessage { topic, component, message: message.clone(), is_of_other: false };
                 self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
             }
             if self.phase == RunPhase::Running {
@@ -129,7 +129,8 @@ impl Engine {
             "has published {MOST_KEYS} keys on topic `{topic}`, the maximum: messages with other keys are lost; reuse keys, or use an event topic"
         );
         let Some(slot) = self.slots.get_mut(sender as usize) else {
-            let reason = format!("`{OUTSIDE_NAME}` {keys}");
+            let who = self.name_of(sender).unwrap_or_else(|| Arc::from(OUTSIDE_NAME));
+            let reason = format!("`{who}` {keys}");
             if !self.reasons.contains(&reason) {
                 self.reasons.push(reason);
             }
@@ -167,6 +168,6 @@ impl Engine {
             *counts.entry(message.header().sender).or_default() += 1;
         }
         let (sender, _) = counts.into_iter().max_by_key(|(_, count)| *count)?;
-        self.slots.get(sender as usize).map(|slot| Arc::clone(&slot.name))
+        self.name_of(sender)
     }
 }

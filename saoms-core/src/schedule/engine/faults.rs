@@ -11,7 +11,6 @@ use super::slot::Slot;
 use crate::bus::{Link, TopicId};
 use crate::fault::{Arrival, End, FaultPlay, OnLink};
 use crate::observe::Occurrence;
-use crate::schedule::inject::OUTSIDE;
 
 fn end(number: u32, slot: &Slot) -> End<'_> {
     End { number, path: &slot.name, site: &slot.spec.site }
@@ -62,8 +61,8 @@ impl Engine {
         let sender = message.header().sender;
         self.publish(topic, message.clone(), now);
         for link in links {
-            // What a component hears of itself takes no way, and what comes from outside has no sender.
-            if sender == link.component || sender == OUTSIDE {
+            // What a component hears of itself takes no way, and what comes from outside has none within the program.
+            if sender == link.component || sender as usize >= self.slots.len() {
                 self.publish(link.topic, message.clone(), now);
                 continue;
             }

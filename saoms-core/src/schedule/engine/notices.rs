@@ -34,7 +34,7 @@ impl Engine {
             let cause = self.record_notice(now, &name, (COMPONENT_FAILED, text), self.faults.cause(index));
             self.standstill.note_effect(now);
             for topic in topics {
-                self.deliver_injection(now, cause, topic, (bytes.clone(), None, None), None);
+                self.deliver_injection((now, &name), cause, topic, (bytes.clone(), None, None), None);
             }
         }
     }
@@ -42,13 +42,13 @@ impl Engine {
     /// The topics, as they are called on the bus, that components of a site read under this name.
     fn topics_of_readers(&self, declared: &str, site: &str) -> Vec<TopicId> {
         let mut topics: Vec<TopicId> = Vec::new();
-        for slot in self.slots.iter().filter(|slot| slot.is_member() && slot.spec.site == site) {
-            let of_loops = slot.spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
-            let mut all = slot.spec.class.declaration().subscribes.iter().chain(of_loops);
+        for (_, spec) in self.members_everywhere().filter(|(_, spec)| spec.site == site) {
+            let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
+            let mut all = spec.class.declaration().subscribes.iter().chain(of_loops);
             if !all.any(|topic| topic.name == declared) {
                 continue;
             }
-            if let Some(topic) = self.bus.find(&slot.spec.topic(declared)).filter(|topic| !topics.contains(topic)) {
+            if let Some(topic) = self.bus.find(&spec.topic(declared)).filter(|topic| !topics.contains(topic)) {
                 topics.push(topic);
             }
         }

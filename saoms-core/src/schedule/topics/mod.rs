@@ -89,9 +89,10 @@ pub(super) fn retained(shared: &Shared, topic: &str) -> Result<Vec<SentMessage>,
     let id = engine.topic(topic)?;
     let name = engine.bus.name(id);
     let sent = |message: SharedMessage| {
-        let sender = engine.slots.get(message.header().sender as usize);
-        let component = sender.map_or_else(|| Arc::from(OUTSIDE_NAME), |slot| Arc::clone(&slot.name));
-        SentMessage { topic: Arc::clone(name), component, message }
+        let sender = message.header().sender;
+        let component = engine.name_of(sender).unwrap_or_else(|| Arc::from(OUTSIDE_NAME));
+        let is_of_other = engine.slots.get(sender as usize).is_none();
+        SentMessage { topic: Arc::clone(name), component, message, is_of_other }
     };
     Ok(engine.bus.retained(id).into_iter().map(sent).collect())
 }

@@ -37,20 +37,21 @@ impl Shared {
         let declared = match &engine.publishers {
             Some(known) => Arc::clone(known),
             None => {
-                let members = engine.slots.iter().zip(0..).filter(|(slot, _)| slot.is_member());
-                let members = members.map(|(slot, number)| (number, Arc::clone(&slot.spec)));
-                let declared = Arc::new(DeclaredPublishers::of(members));
+                let declared = Arc::new(DeclaredPublishers::of(engine.members_everywhere()));
                 engine.publishers = Some(Arc::clone(&declared));
                 declared
             }
         };
         let numbers = declared.topics.get(topic).map_or(&[][..], Vec::as_slice);
         let known = |sender: &u32| {
-            let slot = engine.slots.get(*sender as usize)?;
-            let number = slot.spec.class.declaration().speaker(&slot.spec.values);
+            let (spec, has_begun) = match engine.slots.get(*sender as usize) {
+                Some(slot) => (&slot.spec, slot.instances > 0 || slot.is_scheduled()),
+                None => engine.networks.elsewhere.get(*sender)?,
+            };
+            let number = spec.class.declaration().speaker(&spec.values);
             Some(KnownPublisher {
                 sender: *sender,
-                has_begun: slot.instances > 0 || slot.is_scheduled(),
+                has_begun,
                 number: number.and_then(|number| u32::try_from(number).ok()),
             })
         };

@@ -65,7 +65,7 @@ impl std::error::Error for RaiseError {}
 impl Takers {
     /// The takers of a fleet that does not run yet.
     pub fn of_assembly(assembly: &Assembly) -> Takers {
-        Takers::of((0..).zip(assembly.components.iter().map(|spec| Arc::new(spec.clone()))))
+        Takers::of((0..).zip(assembly.all().map(|spec| Arc::new(spec.clone()))))
     }
 
     /// The takers among these components, given with their numbers.

@@ -83,6 +83,7 @@ proptest! {
             patience: 1_000 * MILLISECOND,
             limit: 8 << 10,
             components: BTreeSet::from(["Own".to_owned()]),
+            others: BTreeSet::new(),
         });
         exchange.read(&Arc::from("EVENTS"), false, 0);
         exchange.read(&Arc::from("STATES"), true, 0);

@@ -89,6 +89,7 @@ impl Lossy {
             patience: 1_000 * MILLISECOND,
             limit: 256 << 10,
             components: BTreeSet::from([component.to_owned()]),
+            others: BTreeSet::new(),
         });
         exchange.read(&Arc::from("EVENTS"), false, schema);
         exchange.read(&Arc::from("STATES"), true, 0);

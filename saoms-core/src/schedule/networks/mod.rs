@@ -1,8 +1,10 @@
 //! The networks that components of the fleet are on: their messages leave the program, and those of other programs come
 //! to the topics of this one.
 
+pub(super) mod elsewhere;
+
 use std::collections::{HashMap, VecDeque};
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
+use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Cause, Header, Level, Time};
@@ -12,18 +14,17 @@ use saoms_lang::schema::Schema;
 use super::engine::ending::EndCause;
 use super::engine::{Engine, RunPhase};
 use super::handle::Handle;
-use super::inject::OUTSIDE;
+use super::inject::{OUTSIDE, OUTSIDE_NAME};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::hash::text_hash;
 use crate::network::exchange::wire::Vote;
 use crate::network::{Fleet, FromNetwork, FromRun, Port};
+use crate::observe::{Notification, SentMessage};
+use elsewhere::Elsewhere;
 
 /// The network of a component that is on none.
 pub(super) const NO_NETWORK: u8 = u8::MAX;
-
-/// The number of the first component of another program. Components of this one have numbers from 0.
-const FIRST_REMOTE: u32 = 1 << 31;
 
 /// The networks of a run.
 #[derive(Debug, Default)]
@@ -34,6 +35,9 @@ pub(super) struct Networks {
     are_done: Vec<bool>,
     /// What is left there just before the engine is unlocked.
     pub(super) waiting: Vec<(u8, FromRun)>,
+    /// The networks of the components that use each topic.
+    topics: HashMap<TopicId, Vec<u8>>,
+    pub(super) elsewhere: Elsewhere,
     /// The schemas of topics, by the numbers of these.
     schemas: HashMap<TopicId, (u64, Option<Arc<Schema>>)>,
 }
@@ -62,46 +66,6 @@ impl Networks {
     }
 }
 
-/// The paths of components of other programs, by their numbers.
-#[derive(Debug, Default)]
-pub(super) struct RemoteNames {
-    known: RwLock<Known>,
-}
-
-#[derive(Debug, Default)]
-struct Known {
-    names: Vec<&'static str>,
-    numbers: HashMap<&'static str, u32>,
-}
-
-impl RemoteNames {
-    fn read(&self) -> RwLockReadGuard<'_, Known> {
-        self.known.read().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The name of the component with this number.
-    pub(super) fn get(&self, number: u32) -> Option<&'static str> {
-        self.read().names.get(number.checked_sub(FIRST_REMOTE)? as usize).copied()
-    }
-
-    /// The number of the component with this name. Names stay: a component that comes again has the same number.
-    fn number(&self, name: &str) -> u32 {
-        if let Some(number) = self.read().numbers.get(name) {
-            return *number;
-        }
-        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
-        if let Some(number) = known.numbers.get(name) {
-            return *number;
-        }
-        let number = FIRST_REMOTE.saturating_add(u32::try_from(known.names.len()).unwrap_or(u32::MAX)).min(OUTSIDE - 1);
-        // Never freed: contexts lend it to components.
-        let name: &'static str = name.to_owned().leak();
-        known.names.push(name);
-        known.numbers.insert(name, number);
-        number
-    }
-}
-
 impl Engine {
     /// Leaves a message of a component for its network.
     #[cold]
@@ -112,15 +76,32 @@ impl Engine {
         topic: TopicId,
         message: &SharedMessage,
     ) {
-        let to = message.to().and_then(|to| self.slots.get(to as usize)).map(|slot| Arc::clone(&slot.name));
+        let to = message.to().and_then(|to| self.name_of(to));
         let schema = self.schema_of(topic).0;
         let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
         let (component, message) = (Arc::clone(component), message.clone());
         self.networks.waiting.push((network, FromRun::Message { topic, component, to, is_state, schema, message }));
     }
 
+    /// Leaves a message for all networks of the components that use its topic: one that comes from outside, or that
+    /// tells of a component.
+    pub(super) fn put_on_networks(&mut self, component: &Arc<str>, topic: TopicId, message: &SharedMessage) {
+        for network in self.networks.topics.get(&topic).cloned().unwrap_or_default() {
+            self.put_on_network(network, component, topic, message);
+        }
+    }
+
+    /// A component of a network uses a topic.
+    pub(super) fn use_on_network(&mut self, network: u8, topic: TopicId) {
+        let networks = self.networks.topics.entry(topic).or_default();
+        if !networks.contains(&network) {
+            networks.push(network);
+        }
+    }
+
     /// A component of a network reads a topic.
     pub(super) fn read_from_network(&mut self, network: u8, topic: TopicId) {
+        self.use_on_network(network, topic);
         let schema = self.schema_of(topic).0;
         let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
         self.networks.waiting.push((network, FromRun::Reads { topic, is_state, schema }));
@@ -190,11 +171,19 @@ impl Fleet for NetworkedFleet {
             if to == Some(None) || schema.check(&arrived.bytes).is_err() {
                 continue;
             }
-            let sender = shared.remote_names.number(&arrived.component);
+            let sender = match arrived.component.starts_with(OUTSIDE_NAME) {
+                true => OUTSIDE,
+                false => engine.networks.elsewhere.hear(&arrived.component),
+            };
             let header = Header { sender, sent: Time::from_nanos(now), cause: Cause::default() };
             let (key, place) = (schema.key(&arrived.bytes), schema.place(&arrived.bytes));
             let message = SharedMessage::from_bytes(header, None, arrived.bytes).of(key, place).only_to(to.flatten());
             engine.standstill.note_effect(now);
+            if let Some(observers) = engine.bus.observers(topic).cloned() {
+                let (topic, component) = (Arc::clone(engine.bus.name(topic)), Arc::from(arrived.component));
+                let sent = SentMessage { topic, component, message: message.clone(), is_of_other: true };
+                engine.notifications.push(Notification::Sent(sent, observers));
+            }
             engine.send(topic, message, now);
         }
         shared.release(engine);

@@ -1,0 +1,87 @@
+//! One composite, run in several programs by its nodes.
+
+use std::fs;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::programs::{Program, Programs, component};
+use crate::support::root;
+
+/// Starts a node of a composite.
+fn start(programs: &Programs, composite: &str, node: &str, more: &[&str]) -> Arc<Program> {
+    let report = format!("{node}.json");
+    let arguments = ["run", composite, "--node", node, "--report", &report];
+    programs.run(node, &[&arguments, more].concat())
+}
+
+fn report(programs: &Programs, node: &str) -> Value {
+    serde_json::from_str(&programs.read(&format!("{node}.json"))).unwrap()
+}
+
+#[test]
+fn the_airport_runs_in_programs_by_its_nodes() {
+    let programs = Programs::new();
+    programs
+        .write("airport.composite", &fs::read_to_string(root().join("composites/airport-nodes.composite")).unwrap());
+    let (port, url) = (format!("port={}", programs.port), format!("url={}", programs.url(programs.port)));
+    let given = ["--set", "host=127.0.0.1", "--set", &port, "--set", &url, "--set", "transport=relay"];
+    let nodes = ["floor", "traffic", "control"];
+    let all = nodes.map(|node| start(&programs, "airport.composite", node, &given));
+    for program in &all {
+        programs.ends(program, 0);
+    }
+    let floor = report(&programs, "floor");
+    assert_eq!(floor["luggage"]["delivered"], 9, "{}", programs.printed());
+    assert_eq!(floor["luggage"]["open"], 0);
+    assert_eq!(floor["collisions"]["vertex"], 0);
+    assert_eq!(floor["collisions"]["swap"], 0);
+    let printed = all[0].printed();
+    for luggage in 1..=9 {
+        assert_eq!(printed.matches(&format!("deposited luggage {luggage} at")).count(), 1, "{printed}");
+    }
+}
+
+#[test]
+fn robots_of_two_nodes_share_a_zone_of_a_third() {
+    let programs = Programs::new();
+    let url = programs.url(programs.port);
+    let task = |name: &str, class: &str, more: &[(&str, &str)]| {
+        let usual = [("ID", name), ("period", "100"), ("url", &url)];
+        component(name, class, &[&usual, more].concat())
+    };
+    let at = |node: &str, text: String| text.replacen("<component ", &format!("<component s:node=\"{node}\" "), 1);
+    let port = programs.port.to_string();
+    let broker = [("IP", "127.0.0.1"), ("transport", "relay"), ("port", &port)];
+    let scenario =
+        "at 1s luggage (3,1) to (3,10)\nthen 300ms every 300ms 7 times luggage (5,0)..(9,10) to (1,0)..(4,10)";
+    let map = "...........\n".repeat(11);
+    let mut components = component("Broker", "unibg.robotics.tca.MessageBrokerImpl", &broker)
+        + &task("Environment", "saoms.Environment", &[("scenario", scenario)])
+        + &task("Master", "saoms.MasterEnvironment", &[])
+        + &at("traffic", task("Zone", "saoms.Zone", &[("map", &map)]));
+    for robot in 1..=6 {
+        let node = if robot % 2 == 0 { "gate-b" } else { "gate-a" };
+        components += &at(node, task(&format!("Robot{robot}"), "saoms.Robot", &[]));
+    }
+    programs.write(
+        "fleet.composite",
+        &format!(
+            "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:s=\"urn:saoms:1\" \
+             targetNamespace=\"urn:fleet\" name=\"fleet\" s:defaultNode=\"control\">\n{components}</composite>\n"
+        ),
+    );
+    // The zone is there first: it waits for the robots of both gates.
+    let traffic = start(&programs, "fleet.composite", "traffic", &[]);
+    let control = start(&programs, "fleet.composite", "control", &[]);
+    programs.until(&traffic, "has joined the network");
+    let gates = ["gate-a", "gate-b"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    for program in [&traffic, &control, &gates[0], &gates[1]] {
+        programs.ends(program, 0);
+    }
+    let printed = gates.each_ref().map(|gate| gate.printed()).concat();
+    for luggage in 1..=8 {
+        assert_eq!(printed.matches(&format!("deposited luggage {luggage} at")).count(), 1, "{}", programs.printed());
+    }
+    assert!(!programs.printed().contains("which was granted to"), "{}", programs.printed());
+}
