@@ -11,7 +11,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
 
 use super::entry::Content;
-use super::{Journal, JournalEntry, LoopCounts};
+use super::{Journal, JournalEntry, LoopCounts, node_of};
 
 /// A record as it is written; fields without a value are left out.
 #[derive(Serialize)]
@@ -106,7 +106,7 @@ impl<'de> Deserialize<'de> for JournalEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<JournalEntry, D::Error> {
         let mut line = ReadLine::deserialize(deserializer)?;
         let ReadLine { id, cause, .. } = line;
-        if cause >= id {
+        if cause >= id && node_of(Cause(cause)).is_none() {
             let wrong = Wrong(format!("record {id} cannot follow from record {cause}: causes are older"));
             return Err(D::Error::custom(wrong));
         }

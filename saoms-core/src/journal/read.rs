@@ -45,6 +45,8 @@ pub struct JournalDocument {
     pub end: Option<Time>,
     /// Where it comes from.
     pub source: JournalSource,
+    /// The nodes of the fleet, by name, whose components records can follow from; none where the file does not tell.
+    pub nodes: Vec<String>,
 }
 
 /// Where a journal comes from.
@@ -102,6 +104,14 @@ struct Report {
     time_s: f64,
     components: Vec<ComponentName>,
     journal: Option<Journal>,
+    #[serde(default)]
+    part: Option<NamedNodes>,
+}
+
+/// The field of a part of a fleet that is read.
+#[derive(Deserialize)]
+struct NamedNodes {
+    nodes: Vec<String>,
 }
 
 /// The first line of the file of a journal.
@@ -171,6 +181,7 @@ fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
         components: report.components,
         end: Some(end),
         source: JournalSource::Report,
+        nodes: report.part.map(|part| part.nodes).unwrap_or_default(),
     })
 }
 
@@ -212,7 +223,14 @@ pub fn read_parts(parts: &[&str]) -> Result<JournalDocument, (usize, JournalRead
     };
     let end = all.end.map(|end| time(end.time_s)).transpose();
     let end = end.map_err(|error| wrong(incomplete(1, error.to_string())))?;
-    Ok(JournalDocument { journal, seed: all.seed, components: all.components, end, source: JournalSource::File })
+    Ok(JournalDocument {
+        journal,
+        seed: all.seed,
+        components: all.components,
+        end,
+        source: JournalSource::File,
+        nodes: Vec::new(),
+    })
 }
 
 /// What the lines of a journal hold.

@@ -1,6 +1,8 @@
 //! The report of a run: one [`RunReport`], and the statistics that it is made from.
 
 mod lateness;
+mod merge;
+mod part;
 mod run;
 mod sections;
 mod standstill;
@@ -8,6 +10,8 @@ mod standstill;
 mod tests;
 
 pub use lateness::{Lateness, LatenessSteps, LatenessSummary};
+pub use merge::{MergeError, merge};
+pub use part::{NodeReport, PartOfFleet};
 pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, RunStatus, Votes};
 pub use sections::Sections;
 pub(crate) use sections::json;

@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{LatenessSummary, Standstill};
+use super::{LatenessSummary, NodeReport, PartOfFleet, Standstill};
 use crate::adaptation::AdaptationReport;
 use crate::journal::Journal;
 
@@ -37,6 +37,12 @@ pub struct RunReport {
     /// A digest of everything that happened, 16 hexadecimal digits: equal for equal runs, on every machine. `null` in
     /// real time, where no two runs are equal.
     pub trace_hash: Option<String>,
+    /// The node of the fleet that ran; `None` where all of it did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<PartOfFleet>,
+    /// The nodes whose reports were joined to this one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub nodes: Vec<NodeReport>,
 }
 
 impl RunReport {
@@ -56,6 +62,8 @@ impl RunReport {
             standstill: self.standstill.clone(),
             outcome: self.outcome.clone(),
             trace_hash: self.trace_hash.clone(),
+            part: self.part.clone(),
+            nodes: self.nodes.clone(),
         }
     }
 
@@ -138,7 +146,7 @@ pub struct Outcome {
 }
 
 /// Status of an ended run: of those that hold, the last one in this list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunStatus {
     /// All work was done.

@@ -17,8 +17,9 @@ enum Entry {
 }
 
 /// The fields of a report that are not for components to write.
-const RESERVED: [&str; 10] = [
+const RESERVED: [&str; 12] = [
     "seed", "time_s", "periods", "components", "journal", "adaptation", "votes", "standstill", "outcome", "trace_hash",
+    "part", "nodes",
 ];
 
 /// Greatest number of parts of a path: nested objects are written and read one within the other.

@@ -2,6 +2,7 @@ use std::fs::File;
 use std::io;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use saoms_api::host::contain;
 use saoms_api::{Level, Time};
@@ -146,6 +147,11 @@ impl RunningFleet {
         self.finish_journal();
         let shared = &self.handle.shared;
         let mut report = shared.lock().report(&shared.sections());
+        if let Some(part) = &mut report.part {
+            let passed = Duration::from_nanos(shared.clock.now_without_pause());
+            let began = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().saturating_sub(passed);
+            part.began_us = u64::try_from(began.as_micros()).unwrap_or(u64::MAX);
+        }
         self.finish();
         self.handle.shared.observers.end(&mut report);
         report

@@ -10,7 +10,7 @@ use clap::Args;
 use saoms_api::Time;
 use saoms_api::host::{format_duration, one_line};
 use saoms_core::journal::{
-    JournalDocument, JournalPart, JournalReadError, JournalSource, Why, find, part, read, read_parts,
+    JournalDocument, JournalPart, JournalReadError, JournalSource, Why, find, node_of, part, read, read_parts,
 };
 use saoms_core::observe::earlier_file;
 use serde_json::json;
@@ -18,6 +18,7 @@ use serde_json::json;
 use crate::Exit;
 use crate::arguments::{Format, duration};
 use crate::command::control::{RunningFleetArguments, escape};
+use crate::command::report::merged;
 use crate::output::{self, Outputs, eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
@@ -41,10 +42,10 @@ pub(crate) struct WhyArguments {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) at: Option<Duration>,
 
-    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input. Without this option,
-    /// the running fleet is asked
+    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input. Of a fleet that ran
+    /// in several programs, give the report of each. Without this option, the running fleet is asked
     #[arg(long, visible_alias = "journal", value_name = "FILE", conflicts_with_all = ["name", "token_file"])]
-    pub(crate) report: Option<PathBuf>,
+    pub(crate) report: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(crate) fleet: RunningFleetArguments,
@@ -54,9 +55,10 @@ pub(crate) fn why(arguments: &WhyArguments) -> Exit {
     if let Err(exit) = Outputs::beside(arguments.report.clone()).with_streams() {
         return exit;
     }
-    let document = match arguments.report.as_deref() {
-        Some(path) => whole_document(path),
-        None => match of_running(arguments) {
+    let document = match &arguments.report[..] {
+        [path] => whole_document(path),
+        several @ [_, ..] => of_nodes(several),
+        [] => match of_running(arguments) {
             Ok(document) => Ok(document),
             Err(exit) => return exit,
         },
@@ -102,6 +104,20 @@ fn whole_document(path: &Path) -> Result<JournalDocument, String> {
     Ok(document)
 }
 
+/// The journals of the reports of several nodes as one.
+fn of_nodes(paths: &[PathBuf]) -> Result<JournalDocument, String> {
+    let report = serde_json::to_string(&merged(paths)?).map_err(|error| error.to_string())?;
+    let document = read(&report).map_err(|error| error.to_string())?;
+    if document.journal.entries().is_empty() && document.journal.records > document.journal.overwritten {
+        return Err(
+            "these are reports without the records of their journals, as `--short-report` writes them: run again \
+                    without that option"
+                .to_owned(),
+        );
+    }
+    Ok(document)
+}
+
 /// What the fleet that runs tells. Why there is nothing is reported.
 fn of_running(arguments: &WhyArguments) -> Result<JournalDocument, Exit> {
     let fleet = &arguments.fleet;
@@ -133,6 +149,9 @@ fn answer(arguments: &WhyArguments, document: &JournalDocument) -> Result<Answer
     })?;
     let missing = why.chains.iter().find_map(|chain| chain.missing);
     let lost = missing.map(|missing| {
+        if let Some((node, number)) = node_of(missing) {
+            return of_other_node(document, node, number);
+        }
         let how = if document.source == JournalSource::File { "not written to the file" } else { "overwritten" };
         format!("record {}, which led to this, was {how}. {}", missing.0, advice(document))
     });
@@ -141,6 +160,15 @@ fn answer(arguments: &WhyArguments, document: &JournalDocument) -> Result<Answer
         Format::Json => machine(&component.name, at, &why),
     };
     Ok(Answer { text, lost })
+}
+
+/// What is said of a record of another node, which is not among those that are known.
+fn of_other_node(document: &JournalDocument, node: usize, number: u64) -> String {
+    let node = document.nodes.get(node).map_or_else(|| "another node".to_owned(), |node| format!("node `{node}`"));
+    format!(
+        "record {number} of {node} led to this, and is not known here: give `--report` for each program of the fleet, or \
+         it was overwritten there"
+    )
 }
 
 /// Advice about records that are missing.
@@ -158,7 +186,7 @@ fn advice(document: &JournalDocument) -> String {
 }
 
 /// A file as messages name it.
-fn named(path: &Path) -> String {
+pub(super) fn named(path: &Path) -> String {
     if path == Path::new("-") { "standard input".to_owned() } else { format!("`{}`", path.display()) }
 }
 
@@ -212,7 +240,7 @@ fn earlier_parts(path: &Path, newest: &JournalPart) -> Vec<(PathBuf, String)> {
 }
 
 /// The text of a file, or of standard input for `-`.
-fn text(path: &Path) -> Result<String, String> {
+pub(super) fn text(path: &Path) -> Result<String, String> {
     let name = named(path);
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();

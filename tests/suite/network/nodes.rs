@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::programs::{Program, Programs, component};
-use crate::support::root;
+use crate::support::{root, stdout};
 
 /// Starts a node of a composite.
 fn start(programs: &Programs, composite: &str, node: &str, more: &[&str]) -> Arc<Program> {
@@ -22,16 +22,46 @@ fn report(programs: &Programs, node: &str) -> Value {
 #[test]
 fn the_airport_runs_in_programs_by_its_nodes() {
     let programs = Programs::new();
-    programs
-        .write("airport.composite", &fs::read_to_string(root().join("composites/airport-nodes.composite")).unwrap());
+    let airport = fs::read_to_string(root().join("composites/airport-nodes.composite")).unwrap();
+    // Events that another node takes, from a scenario and from outside.
+    let luggage = "at 500ms luggage";
+    let drain = format!("at 400ms drain robot=1 percent=5.0\n{luggage}");
+    programs.write("airport.composite", &airport.replace(luggage, &drain));
+    programs.write("events.txt", "at 1s drain robot=2 percent=5.0\n");
     let (port, url) = (format!("port={}", programs.port), format!("url={}", programs.url(programs.port)));
     let given = ["--set", "host=127.0.0.1", "--set", &port, "--set", &url, "--set", "transport=relay"];
     let nodes = ["floor", "traffic", "control"];
-    let all = nodes.map(|node| start(&programs, "airport.composite", node, &given));
+    let all = nodes.map(|node| {
+        let events = if node == "control" { &["--events", "events.txt"][..] } else { &[] };
+        start(&programs, "airport.composite", node, &[&given, events].concat())
+    });
     for program in &all {
         programs.ends(program, 0);
     }
     let floor = report(&programs, "floor");
+    assert_eq!(floor["faults"]["applied"]["drain"], 2, "{}", programs.printed());
+    let files = ["floor.json", "control.json", "traffic.json"];
+    let merged = programs.saoms(&[&["report", "merge"], &files[..]].concat());
+    let merged: Value = serde_json::from_str(&stdout(&merged)).unwrap();
+    assert_eq!(merged["luggage"]["delivered"], 9);
+    assert_eq!(merged["luggage"]["requested"], 9);
+    assert_eq!((&merged["luggage"]["open"], &merged["collisions"]["vertex"]), (&0.into(), &0.into()));
+    assert_eq!(merged["components"].as_array().unwrap().len(), 11);
+    assert_eq!(merged["outcome"]["status"], "done", "{}", merged["outcome"]);
+    let nodes: Vec<&str> =
+        merged["nodes"].as_array().unwrap().iter().map(|one| one["node"].as_str().unwrap()).collect();
+    assert_eq!(nodes, ["floor", "control", "traffic"]);
+    let joined = merged["journal"]["entries"].as_array().unwrap().len();
+    let each = nodes.iter().map(|node| report(&programs, node)["journal"]["entries"].as_array().unwrap().len());
+    assert_eq!(joined, each.sum::<usize>());
+    // What a robot did follows from what its program was told by another one.
+    let collected = floor["journal"]["entries"].as_array().unwrap().iter();
+    let mut collected = collected.filter(|entry| entry["text"].as_str().unwrap().starts_with("takes luggage"));
+    let taken = collected.next().expect("a robot takes luggage");
+    let robot = taken["component"].as_str().unwrap();
+    let reports = files.map(|file| ["--report", file]).concat();
+    let why = stdout(&programs.saoms(&[&["why", robot], &reports[..]].concat()));
+    assert!(why.contains("Master") || why.contains("Environment"), "{why}");
     assert_eq!(floor["luggage"]["delivered"], 9, "{}", programs.printed());
     assert_eq!(floor["luggage"]["open"], 0);
     assert_eq!(floor["collisions"]["vertex"], 0);

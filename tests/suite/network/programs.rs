@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::net::TcpListener;
-use std::process::{Child, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::boundary::build;
 use crate::plugins::library;
-use crate::support::command;
+use crate::support::{command, saoms_in};
 
 /// Time for which something is waited for that has to happen.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -112,6 +112,11 @@ impl Programs {
     /// Reads a file that a program wrote.
     pub(super) fn read(&self, file: &str) -> String {
         fs::read_to_string(self.folder.path().join(file)).unwrap()
+    }
+
+    /// Runs a command where the files of the programs are.
+    pub(super) fn saoms(&self, arguments: &[&str]) -> Output {
+        saoms_in(self.folder.path(), arguments)
     }
 
     /// Starts a program with these arguments.

@@ -15,6 +15,8 @@ pub struct Arrived {
     pub key: Option<u64>,
     /// Wall clock of its sending, in nanoseconds since 1970.
     pub sent: u64,
+    /// The record of the sender's journal with the reason; 0 is none.
+    pub cause: u64,
     /// The message.
     pub bytes: Vec<u8>,
 }

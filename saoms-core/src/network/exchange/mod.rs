@@ -167,11 +167,11 @@ impl Exchange {
         self.pass(now);
         // One that was never heard is heard soon, and its messages are sent again.
         let Some(peer) = self.peers.get_mut(&envelope.program) else { return };
-        let Envelope { program, number, component, to, key, has_key, sent, schema, .. } = envelope;
+        let Envelope { program, number, component, to, key, has_key, sent, schema, cause } = envelope;
         if number > LARGEST_NUMBER {
             return;
         }
-        let arrived = Arrived { component, to, key: has_key.then_some(key), sent, bytes: bytes.to_owned() };
+        let arrived = Arrived { component, to, key: has_key.then_some(key), sent, cause, bytes: bytes.to_owned() };
         let incoming = peer.incoming.entry(Arc::clone(&topic)).or_default();
         if schema != own.schema && peer.differing.insert(Arc::clone(&topic)) {
             let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));

@@ -18,6 +18,7 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 use self::transaction::Change;
 use super::shared::Shared;
 use crate::assemble::{ChangePlan, Replacement};
+use crate::report::PartOfFleet;
 
 pub use error::{ChangeError, StartError};
 pub use live::SetError;
@@ -40,8 +41,10 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, C
     let _one_at_a_time = shared.lock_changes();
     let current = shared.lock().specs();
     let wanted: Vec<_> = {
+        let part = PartOfFleet::of(&wanted);
         let mut engine = shared.lock();
-        engine.networks.elsewhere.know(wanted.elsewhere);
+        engine.networks.elsewhere.know(part, wanted.elsewhere);
+        engine.open_topics_of_takers();
         wanted.components.into_iter().map(|spec| Some(Arc::new(engine.still_stopped(spec)))).collect()
     };
     let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));

@@ -27,6 +27,8 @@ impl Engine {
             standstill: self.standstill.told.clone(),
             outcome: self.outcome(),
             trace_hash: self.trace.as_ref().map(Trace::digits),
+            part: self.networks.elsewhere.part().cloned(),
+            nodes: Vec::new(),
         }
     }
 

@@ -3,10 +3,15 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
+use saoms_api::Cause;
+use saoms_api::host::TopicDeclaration;
 use saoms_lang::assembly::ComponentSpec;
 
+use crate::journal::{node_of, of_node};
+use crate::report::PartOfFleet;
 use crate::schedule::engine::Engine;
 use crate::schedule::inject::OUTSIDE;
+use crate::schedule::networks::NO_NETWORK;
 
 /// The number of the first component of another program. Components of this one have numbers from 0.
 const FIRST: u32 = 1 << 31;
@@ -15,6 +20,8 @@ const FIRST: u32 = 1 << 31;
 #[derive(Debug, Default)]
 pub(in crate::schedule) struct Elsewhere {
     names: Arc<RemoteNames>,
+    /// The part of the fleet that runs here.
+    part: Option<PartOfFleet>,
     /// Those of other nodes of the fleet, by their numbers.
     known: BTreeMap<u32, Known>,
 }
@@ -27,8 +34,9 @@ struct Known {
 }
 
 impl Elsewhere {
-    /// The components of other nodes from now on.
-    pub(in crate::schedule) fn know(&mut self, specs: Vec<ComponentSpec>) {
+    /// The part of the fleet that runs here from now on, and the components of other nodes.
+    pub(in crate::schedule) fn know(&mut self, part: Option<PartOfFleet>, specs: Vec<ComponentSpec>) {
+        self.part = part;
         self.known = specs
             .into_iter()
             .map(|spec| (self.names.number(&spec.path), Known { spec: Arc::new(spec), is_heard: false }))
@@ -42,6 +50,23 @@ impl Elsewhere {
             known.is_heard = true;
         }
         number
+    }
+
+    /// The part of the fleet that runs here; `None` where all of it does.
+    pub(in crate::schedule) fn part(&self) -> Option<&PartOfFleet> {
+        self.part.as_ref()
+    }
+
+    /// The record that a message follows from, as the component with this number says it.
+    pub(super) fn cause(&self, sender: u32, record: u64) -> Cause {
+        let Some((part, known)) = self.part.as_ref().zip(self.known.get(&sender)) else { return Cause::default() };
+        let place = |name: &str| part.nodes.iter().position(|node| node == name);
+        match node_of(Cause(record)) {
+            // It passes on why it was told something.
+            Some((node, record)) if Some(node) == place(&part.node) => Cause(record),
+            Some(_) => Cause(record),
+            None => place(&known.spec.node).map_or(Cause::default(), |node| of_node(node, record)),
+        }
     }
 
     /// The names of all of them by their numbers.
@@ -108,6 +133,30 @@ impl Engine {
     pub(in crate::schedule) fn name_of(&self, number: u32) -> Option<Arc<str>> {
         let own = self.slots.get(number as usize).map(|slot| Arc::clone(&slot.name));
         own.or_else(|| self.networks.elsewhere.names.get(number).map(Arc::from))
+    }
+
+    /// Opens the topics by which components of other nodes take events: what raises one, and who sends one from
+    /// outside, may be in this program.
+    pub(in crate::schedule) fn open_topics_of_takers(&mut self) {
+        for (_, spec) in self.networks.elsewhere.specs().collect::<Vec<_>>() {
+            let network = self.networks.of(&spec);
+            for (_, declared) in spec.class.declaration().taken().filter(|_| network != NO_NETWORK) {
+                let name = spec.topic(&declared.name);
+                let schema = declared.schema.to_string();
+                let topic = TopicDeclaration {
+                    name: &declared.name,
+                    kind: declared.kind,
+                    message: &declared.message,
+                    schema: &schema,
+                };
+                let known = self.bus.find(&name);
+                // The checker has held all users of a topic to one declaration.
+                let opened = || self.bus.publisher(&name, &topic, &Arc::from(spec.path.as_str())).ok();
+                if let Some(topic) = known.or_else(opened) {
+                    self.use_on_network(network, topic);
+                }
+            }
+        }
     }
 
     /// The components that are members of this program's part of the fleet, and those of other nodes, with their

@@ -7,9 +7,10 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicKind};
-use saoms_api::{Cause, Header, Level, Time};
+use saoms_api::{Header, Level, Time};
 use saoms_lang::assembly::ComponentSpec;
 use saoms_lang::schema::Schema;
+use serde_json::Value;
 
 use super::engine::ending::EndCause;
 use super::engine::{Engine, RunPhase};
@@ -118,7 +119,9 @@ impl Engine {
         let bus = &self.bus;
         self.networks.schemas.entry(topic).or_insert_with(|| {
             let text = bus.schema(topic);
-            (text_hash(text), Schema::parse(text).ok().map(Arc::new))
+            // Two texts of one schema are one, as they are in a program.
+            let canonical = serde_json::from_str::<Value>(text).map_or_else(|_| text.to_owned(), |it| it.to_string());
+            (text_hash(&canonical), Schema::parse(text).ok().map(Arc::new))
         })
     }
 }
@@ -175,7 +178,8 @@ impl Fleet for NetworkedFleet {
                 true => OUTSIDE,
                 false => engine.networks.elsewhere.hear(&arrived.component),
             };
-            let header = Header { sender, sent: Time::from_nanos(now), cause: Cause::default() };
+            let cause = engine.networks.elsewhere.cause(sender, arrived.cause);
+            let header = Header { sender, sent: Time::from_nanos(now), cause };
             let (key, place) = (schema.key(&arrived.bytes), schema.place(&arrived.bytes));
             let message = SharedMessage::from_bytes(header, None, arrived.bytes).of(key, place).only_to(to.flatten());
             engine.standstill.note_effect(now);

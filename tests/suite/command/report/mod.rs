@@ -1,6 +1,7 @@
 //! `saoms report --from-journal`: what can be known of a run that wrote no report.
 
 mod adaptation;
+mod nodes;
 
 use std::fs;
 
