@@ -53,7 +53,7 @@
     BLOCK JSON(}, {"name": "block", "type":) BLOCK JSON(}, {"name": "end", "type":) BLOCK JSON(}, {"name": "received", "type": "uint64"},            \
         {"name": "held", "type":) STEPS JSON(}, {"name": "goal", "type":) BLOCK                             \
     JSON(}, {"name": "charger", "type":) BLOCK JSON(}, {"name": "rank", "type": "uint64"},                  \
-        {"name": "standing", "type": {"enumeration": "uint8", "values": {"MAKES_WAY": 0, "STAYS": 1, "LOST": 2}}}, \
+        {"name": "standing", "type": {"enumeration": "uint8", "values": {"MAKES_WAY": 0, "STAYS": 1, "LOST": 2, "ENTERS": 3}}}, \
         {"name": "ahead", "type": "uint32"}]})
 
 #define GRANT                                                                                               \
@@ -80,10 +80,11 @@
     JSON(}, {"name": "poll", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) PROGRESS         \
     JSON(}, {"name": "cancel", "arguments": [{"name": "robot", "type": "uint32"}], "reply": null},          \
         {"name": "retire", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) BLOCK JSON(},      \
-        {"name": "battery", "arguments": [{"name": "robot", "type": "uint32"}], "reply": {"optional": "float64"}}]})
+        {"name": "battery", "arguments": [{"name": "robot", "type": "uint32"}], "reply": {"optional": "float64"}}, \
+        {"name": "isOnFloor", "arguments": [{"name": "robot", "type": "uint32"}], "reply": "bool"}]})
 
 /* The operations of the hardware, by their places. */
-enum { ENTER = 0, BEGIN = 2, POLL = 3, RETIRE = 5 };
+enum { ENTER = 0, BEGIN = 2, POLL = 3, RETIRE = 5, IS_ON_FLOOR = 7 };
 
 /* How an action of the hardware goes. */
 enum { RUNNING = 0, DONE = 1, FAILED = 2 };
@@ -92,7 +93,7 @@ enum { RUNNING = 0, DONE = 1, FAILED = 2 };
 enum { REQUEST = 0, REFUSED = 5 };
 
 /* What a robot does when another one wants its block. */
-enum { MAKES_WAY = 0, LOST = 2 };
+enum { MAKES_WAY = 0, LOST = 2, ENTERS = 3 };
 
 typedef struct Block {
     int32_t x, y;

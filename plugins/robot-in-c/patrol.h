@@ -18,7 +18,7 @@
 /* Enough for a request to a zone with `MOST_HELD` steps. */
 #define REQUEST_BYTES 640
 
-/* A block that it holds: a step that a zone granted, or number 0, where it entered the floor. */
+/* A block that it holds: a step that a zone granted, or number 0, where it stood when it began. */
 typedef struct Step {
     uint32_t zone;
     uint64_t number;
@@ -44,9 +44,11 @@ typedef struct Passage {
     int has_zones;
     uint32_t requests, territories_heard, grants_heard;
     uint64_t incarnation;
-    /* The blocks that it holds, the one where it is first; none before it is on the floor. */
+    /* The blocks that it holds, the one where it is first. */
     Step held[MOST_HELD];
     size_t held_count;
+    /* It is not on the floor: the first block is the one where it waits to enter it, and it holds none. */
+    int enters;
     Zone zones[MOST_ZONES];
     size_t zone_count;
     /* Executions since it repeated its requests, and all. */
@@ -89,8 +91,8 @@ void want(Patrol *patrol, const SaomsHostHandle *host);
 
 /* In a site with zones (zones.c): */
 
-/* It is on the floor, and holds the block where it is. */
-void begin_passage(Patrol *patrol, const SaomsHostHandle *host);
+/* It is on the floor, and holds the block where it is; or it wants to enter the floor there, and holds none. */
+void begin_passage(Patrol *patrol, const SaomsHostHandle *host, int enters);
 
 /* Takes in what zones say. */
 SaomsStatus hear_zones(Patrol *patrol, const SaomsHostHandle *host, SaomsSink error);

@@ -36,16 +36,58 @@ static SaomsBuffer arguments_of(const Patrol *patrol, uint8_t *memory) {
     return arguments;
 }
 
+/* It is on the floor. */
+static SaomsStatus stand(Patrol *patrol, const SaomsHostHandle *host) {
+    patrol->has_entered = 1;
+    if (patrol->passage.held_count == 0) {
+        begin_passage(patrol, host, 0);
+    }
+    return SaomsStatus_OK;
+}
+
+/* In a site with zones, asks for the block where it starts, unless it stands on the floor already. 1: it may enter. */
+static int ask_to_enter(Patrol *patrol, const SaomsHostHandle *host, SaomsSink error) {
+    Passage *passage = &patrol->passage;
+    if (!passage->has_zones) {
+        return 1;
+    }
+    if (passage->held_count == 0) {
+        int is_on_floor = 0;
+        if (patrol->has_world) {
+            uint8_t memory[MESSAGE], answer[MESSAGE];
+            SaomsBuffer arguments = arguments_of(patrol, memory), reply = saoms_buffer(answer, sizeof answer);
+            int called = call(patrol, host, IS_ON_FLOOR, &arguments, &reply, error);
+            SaomsReader reader = saoms_reader(saoms_bytes(&reply));
+            if (called < 1) {
+                return called;
+            }
+            is_on_floor = saoms_read_bool(&reader);
+        }
+        if (is_on_floor) {
+            return 1;
+        }
+        begin_passage(patrol, host, 1);
+    }
+    if (passage->enters && hear_zones(patrol, host, error) != SaomsStatus_OK) {
+        return -1;
+    }
+    if (passage->enters) {
+        return ask_zones(patrol, host, ENTERS, error) == SaomsStatus_OK ? 0 : -1;
+    }
+    return 1;
+}
+
 /* Says to the world that the robot is there. */
 static SaomsStatus enter(Patrol *patrol, const SaomsHostHandle *host, SaomsSink error) {
     uint8_t memory[MESSAGE], answer[MESSAGE];
     SaomsBuffer arguments = arguments_of(patrol, memory), reply = saoms_buffer(answer, sizeof answer);
     SaomsReader reader;
-    int called;
+    int called = ask_to_enter(patrol, host, error);
+    if (called < 1) {
+        return called == 0 ? SaomsStatus_OK : SaomsStatus_FAILED;
+    }
     if (!patrol->has_world) {
-        patrol->has_entered = 1;
-        begin_passage(patrol, host);
-        return SaomsStatus_OK;
+        return stand(patrol, host);
     }
     saoms_write_string(&arguments, patrol->name);
     write_block(&arguments, patrol->own.block);
@@ -55,10 +97,8 @@ static SaomsStatus enter(Patrol *patrol, const SaomsHostHandle *host, SaomsSink 
     }
     reader = saoms_reader(saoms_bytes(&reply));
     patrol->own.block = patrol->own.next = patrol->own.wanted = read_block(&reader);
-    patrol->has_entered = 1;
-    begin_passage(patrol, host);
     /* A robot that starts again is where it was left; off its way it stays there. */
-    return reader.failed ? saoms_fail(error, "the world does not say where the robot is") : SaomsStatus_OK;
+    return reader.failed ? saoms_fail(error, "the world does not say where the robot is") : stand(patrol, host);
 }
 
 /* Takes in how the move goes that was begun. */
@@ -277,6 +317,9 @@ static SaomsStatus patrol_initialize(void *component, const SaomsHostHandle *hos
         (status = say_robot(patrol, host, 1, error)) != SaomsStatus_OK) {
         return status;
     }
+    if (patrol->passage.enters) {
+        return SaomsStatus_OK;
+    }
     /* Before anybody moves, everybody has to know which blocks are held. */
     return say_position(patrol, host, error);
 }
@@ -362,6 +405,11 @@ static SaomsStatus patrol_shutdown(void *component, const SaomsHostHandle *host,
             patrol->own.block = block;
             patrol->is_moving = 0;
         }
+    }
+    if (patrol->passage.enters) {
+        /* It holds nothing, and takes nothing that is on its way. */
+        take_no_more(patrol);
+        return ask_zones(patrol, host, MAKES_WAY, error);
     }
     if (patrol->passage.has_zones && patrol->passage.held_count > 0) {
         release_left(patrol);

@@ -47,7 +47,7 @@ static uint64_t rank(const Patrol *patrol) {
 
 /* What it holds. */
 
-void begin_passage(Patrol *patrol, const SaomsHostHandle *host) {
+void begin_passage(Patrol *patrol, const SaomsHostHandle *host, int enters) {
     Passage *passage = &patrol->passage;
     uint64_t date = host->functions->date(host->state), now = host->functions->now(host->state);
     /* Greater than that of each robot of its number before. What was granted to those does not count. */
@@ -57,6 +57,7 @@ void begin_passage(Patrol *patrol, const SaomsHostHandle *host) {
     passage->held[0].number = 0;
     passage->held[0].block = patrol->own.block;
     passage->held_count = 1;
+    passage->enters = enters;
 }
 
 const Block *granted(const Patrol *patrol) {
@@ -186,7 +187,12 @@ static void hear_grant(Patrol *patrol, SaomsReader *reader) {
         }
         /* Heard once, it is held or released for ever. */
         zone->received = step.number;
-        if (is_beside(step.block, end) && passage->held_count < MOST_HELD) {
+        if (passage->enters) {
+            if (same(step.block, end)) {
+                passage->held[0] = step;
+                passage->enters = 0;
+            }
+        } else if (is_beside(step.block, end) && passage->held_count < MOST_HELD) {
             passage->held[passage->held_count++] = step;
         }
     }
@@ -221,11 +227,11 @@ static SaomsBytes request(const Patrol *patrol, const Zone *zone, int standing, 
     Block end = passage->held[passage->held_count - 1].block, goal = corner(patrol, passage->corner);
     uint32_t count = 0;
     size_t at;
-    for (at = 0; at < passage->held_count; at++) {
+    for (at = 0; at < passage->held_count && !passage->enters; at++) {
         count += passage->held[at].zone == zone->number;
     }
     /* A zone that is not near has nothing to grant. */
-    if (standing != MAKES_WAY || (count == 0 && !contains(zone, end, 1))) {
+    if (standing != MAKES_WAY || passage->enters || (count == 0 && !contains(zone, end, 1))) {
         goal = end;
     }
     saoms_write_u64(message, (uint64_t)zone->number << 32 | patrol->number);
@@ -239,7 +245,7 @@ static SaomsBytes request(const Patrol *patrol, const Zone *zone, int standing, 
     write_block(message, end);
     saoms_write_u64(message, zone->received);
     saoms_write_u32(message, count);
-    for (at = 0; at < passage->held_count; at++) {
+    for (at = 0; at < passage->held_count && count > 0; at++) {
         if (passage->held[at].zone == zone->number) {
             saoms_write_u64(message, passage->held[at].number);
             write_block(message, passage->held[at].block);

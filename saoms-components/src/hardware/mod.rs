@@ -42,4 +42,11 @@ pub trait Hardware {
         let _ = (context, robot);
         Ok(None)
     }
+
+    /// True if the robot stands on the floor; so by itself, as that of real robots that nobody carries away. In a site
+    /// with zones a robot of which this says no enters the floor only once its block is granted to it.
+    fn is_on_floor(&mut self, context: &mut Context<'_>, robot: u32) -> Result<bool, Failure> {
+        let _ = (context, robot);
+        Ok(true)
+    }
 }

@@ -67,8 +67,8 @@ impl Territory {
 /// A block of a robot's passage through a zone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Field)]
 pub struct Step {
-    /// Number of the step: a zone counts the steps that it grants to a robot. 0 is the block where the robot entered
-    /// the floor, without a grant.
+    /// Number of the step: a zone counts the steps that it grants to a robot. 0 is the block where the robot stood
+    /// when it began, without a grant.
     pub number: u64,
     /// The block.
     pub block: Block,
@@ -172,6 +172,8 @@ pub enum Standing {
     Stays,
     /// It cannot move any more, so that others have to drive around it.
     Lost,
+    /// It is not on the floor, and waits until it may enter it at its block.
+    Enters,
 }
 
 /// The steps that a zone granted to a robot, and that the robot did not release.

@@ -249,6 +249,9 @@ impl RobotKnowledge {
         if self.shut_down {
             return Some("assistance".to_owned());
         }
+        if self.waits_to_enter() {
+            return Some(format!("a grant to enter the floor at {}", self.block));
+        }
         if self.stopped {
             return Some("its release after a stop".to_owned());
         }

@@ -259,13 +259,17 @@ impl Robot {
         if knowledge.hardware.is_catching_up() {
             return knowledge.catch_up(context);
         }
+        if knowledge.hardware.is_wired() && knowledge.routes.map().is_none() {
+            let Reply::Answer(map) = knowledge.hardware.area(context)? else { return Ok(false) };
+            knowledge.routes.learn(map, knowledge.charge_block);
+        }
+        if !knowledge.may_enter(context)? {
+            return Ok(false);
+        }
         match knowledge.hardware.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
             Reply::Later => Ok(false),
-            Reply::Answer((block, map)) => {
+            Reply::Answer(block) => {
                 (knowledge.block, knowledge.next) = (block, block);
-                if let Some(map) = map {
-                    knowledge.routes.learn(map, knowledge.charge_block);
-                }
                 Ok(true)
             }
         }

@@ -68,6 +68,7 @@ impl RobotKnowledge {
             Some(Trouble::Battery) => "stranded",
             Some(Trouble::Breakdown | Trouble::Hardware) => "broken",
             None if self.shut_down => "broken",
+            None if self.waits_to_enter() => "waits to enter",
             None if self.stopped => "stopped",
             None if has_luggage => "carries luggage",
             None if self.job.is_some() && busy => "goes to luggage",

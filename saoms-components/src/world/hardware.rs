@@ -158,4 +158,8 @@ impl Hardware for World {
         self.unload_if_forgotten(context, robot)?;
         self.referee.retire(robot)
     }
+
+    fn is_on_floor(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<bool, Failure> {
+        Ok(self.referee.is_on_floor(robot))
+    }
 }

@@ -162,6 +162,11 @@ impl Referee {
         Ok(block)
     }
 
+    /// True if a robot stands on the floor.
+    pub(super) fn is_on_floor(&self, robot: u32) -> bool {
+        self.bodies.get(&robot).is_some_and(|body| !body.gone)
+    }
+
     /// Number of robots in this world.
     pub(super) fn robots(&self) -> usize {
         self.bodies.values().filter(|body| !body.gone).count()

@@ -62,6 +62,11 @@ impl Member {
         self.request.number == LAST_NUMBER
     }
 
+    /// True if it is not on the floor, and waits until it may enter it at its block.
+    pub(crate) fn waits_to_enter(&self) -> bool {
+        self.request.standing == Standing::Enters && self.steps.is_empty()
+    }
+
     /// True if it wants to go somewhere else.
     pub(crate) fn wants_to_go(&self) -> bool {
         self.request.standing == Standing::MakesWay && self.request.goal != self.end()

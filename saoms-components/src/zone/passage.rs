@@ -4,12 +4,15 @@ use crate::messages::{ClearTerm, Grant, GrantRequest, LAST_NUMBER, Standing, Ste
 /// The blocks that a robot may enter: its part of the protocol.
 ///
 /// The first block is the one where the robot is. It enters the second one only because a zone granted it, and releases
-/// the first one when it has left it.
+/// the first one when it has left it. A robot that is not on the floor yet holds nothing: it enters the floor at the
+/// first block once a zone has granted that.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Passage {
     robot: u32,
     incarnation: u64,
     held: Vec<Held>,
+    /// True if the robot is not on the floor, and waits for the grant of the first block.
+    enters: bool,
     /// The zones that the robot knows, by their numbers.
     territories: Vec<Territory>,
     /// The zones to which it has spoken.
@@ -56,7 +59,12 @@ pub(crate) struct Wish {
 }
 
 impl Passage {
-    /// The passage of a robot that enters the floor at a block.
+    /// The passage of a robot that wants to enter the floor at a block.
+    pub(crate) fn entering(robot: u32, incarnation: u64, block: Block) -> Passage {
+        Passage { enters: true, ..Passage::new(robot, incarnation, block) }
+    }
+
+    /// The passage of a robot that stands on a block.
     pub(crate) fn new(robot: u32, incarnation: u64, block: Block) -> Passage {
         let held = vec![Held { zone: 0, step: Step { number: 0, block } }];
         Passage { robot, incarnation, held, ..Passage::default() }
@@ -66,11 +74,11 @@ impl Passage {
     pub(crate) fn with(
         robot: u32,
         incarnation: u64,
-        held: Vec<Held>,
+        (held, enters): (Vec<Held>, bool),
         territories: Vec<Territory>,
         links: Vec<Link>,
     ) -> Passage {
-        Passage { robot, incarnation, held, territories, links, linked: None }
+        Passage { robot, incarnation, held, enters, territories, links, linked: None }
     }
 
     pub(crate) fn robot(&self) -> u32 {
@@ -81,8 +89,14 @@ impl Passage {
         self.incarnation
     }
 
+    /// The blocks that the robot holds. Before it has entered the floor, the one where it wants to do so.
     pub(crate) fn held(&self) -> &[Held] {
         &self.held
+    }
+
+    /// True if the robot is not on the floor, and waits until it may enter it.
+    pub(crate) fn enters(&self) -> bool {
+        self.enters
     }
 
     pub(crate) fn territories(&self) -> &[Territory] {
@@ -140,7 +154,7 @@ impl Passage {
 
     /// The terms in which the robot holds nothing: it ignores grants of earlier ones.
     pub(crate) fn clear(&self) -> Vec<ClearTerm> {
-        let holds = |zone: u32| self.held.iter().any(|held| held.zone == zone);
+        let holds = |zone: u32| !self.enters && self.held.iter().any(|held| held.zone == zone);
         let clear = self.territories.iter().filter(|territory| !holds(territory.zone));
         clear.map(|&Territory { zone, term, .. }| ClearTerm { zone, term }).collect()
     }
@@ -178,8 +192,11 @@ impl Passage {
         for step in &grant.steps {
             if step.number > link.received {
                 link.received = step.number;
-                if step.block.distance(end) == 1 {
-                    self.held.push(Held { zone: grant.zone, step: *step });
+                let held = Held { zone: grant.zone, step: *step };
+                if self.enters && step.block == end {
+                    (self.held, self.enters) = (vec![held], false);
+                } else if !self.enters && step.block.distance(end) == 1 {
+                    self.held.push(held);
                     end = step.block;
                 }
             }
@@ -214,14 +231,15 @@ impl Passage {
     /// The requests that have to be sent now: new ones, and with `again` also those that were not taken in.
     pub(crate) fn requests(&mut self, wish: Wish, again: bool) -> Vec<GrantRequest> {
         self.link(wish.charger);
-        let Passage { robot, incarnation, ref held, ref mut links, .. } = *self;
+        let Passage { robot, incarnation, ref held, enters, ref mut links, .. } = *self;
         let (Some(first), Some(last)) = (held.first(), held.last()) else { return Vec::new() };
         let (block, end) = (first.step.block, last.step.block);
         let goal = wish.goal.unwrap_or(end);
         let mut requests = Vec::new();
         for one in links {
             let zone = one.territory.zone;
-            let of_zone: Vec<Step> = held.iter().filter(|held| held.zone == zone).map(|held| held.step).collect();
+            let of_zone = held.iter().filter(|held| !enters && held.zone == zone);
+            let of_zone: Vec<Step> = of_zone.map(|held| held.step).collect();
             let is_near = one.territory.contains(end)
                 || goal != end && end.neighbours().into_iter().any(|block| one.territory.contains(block));
             let aside = wish.aside.filter(|(block, _)| one.territory.contains(*block));

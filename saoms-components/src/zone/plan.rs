@@ -7,6 +7,8 @@
 //! (Okumura, Machida, Défago, Tamura, 2019) without its common time steps, and without moves into a block that is not
 //! free yet.
 //!
+//! Before all others come robots that want to enter the floor: a robot on their block is moved away.
+//!
 //! Into a dead end no robot goes on while another one comes out of it, which is served first: else more and more robots
 //! would queue in it, and none could leave.
 
@@ -75,6 +77,7 @@ pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &
     let order = order(ledger, ground);
     let (busy, taken): (BTreeSet<u32>, BTreeSet<Block>) = maneuvers.iter().flat_map(Maneuver::concerns).unzip();
     let mut round = Round { ledger, ground, decided: busy.clone(), busy, taken, granted, ahead };
+    let mut waiting = round.admit();
     for robot in &order {
         round.serve(*robot);
     }
@@ -84,7 +87,7 @@ pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &
     if let Some(maneuver) = round.maneuver(&order) {
         maneuvers.push(maneuver);
     }
-    let waiting = order.iter().copied().filter(|robot| round.note_wait(*robot)).collect();
+    waiting.extend(order.iter().copied().filter(|robot| round.note_wait(*robot)));
     Planned { granted: round.granted, waiting }
 }
 
@@ -121,6 +124,31 @@ fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl
 }
 
 impl Round<'_> {
+    /// Grants robots the block where they want to enter the floor, if it is free; else its holder is asked to leave.
+    /// Returns those that wait for another robot than before.
+    fn admit(&mut self) -> BTreeSet<u32> {
+        let territory = self.ledger.territory();
+        let waits = |member: &Member| member.waits_to_enter() && territory.contains(member.request.block);
+        let members = self.ledger.members().iter().filter(|(_, member)| waits(member));
+        let entering: Vec<(u32, Block)> = members.map(|(robot, member)| (*robot, member.request.block)).collect();
+        let mut waiting = BTreeSet::new();
+        for (robot, block) in entering {
+            let holder = self.ledger.holder(block);
+            if let Some(holder) = holder {
+                self.ask(holder, block, block, LINE);
+            } else if !self.taken.contains(&block) && self.ledger.grant(robot, block) {
+                self.granted.insert(robot);
+            }
+            let in_the_way = holder.map(|holder| (block, holder));
+            if let Some(member) = self.ledger.member_mut(robot)
+                && std::mem::replace(&mut member.in_the_way, in_the_way) != in_the_way
+            {
+                waiting.insert(robot);
+            }
+        }
+        waiting
+    }
+
     /// Grants a robot its next block, unless it still has one ahead.
     fn serve(&mut self, robot: u32) {
         let Some(member) = self.ledger.member(robot) else { return };

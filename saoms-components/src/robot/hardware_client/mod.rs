@@ -48,7 +48,7 @@ impl HardwareClient {
     pub(crate) fn new(context: &mut Context<'_>) -> Result<HardwareClient, Failure> {
         let hardware: HardwareReference = context.reference("world")?;
         let wired = context.is_wired(&hardware);
-        Ok(HardwareClient { hardware, wired, entered: !wired, ..HardwareClient::default() })
+        Ok(HardwareClient { hardware, wired, ..HardwareClient::default() })
     }
 
     pub(crate) fn memory(&self) -> HardwareMemory {
@@ -60,7 +60,7 @@ impl HardwareClient {
     pub(crate) fn restore(&mut self, memory: HardwareMemory) {
         (self.retired, self.running) = (memory.retired, memory.running);
         self.gauge = Gauge::of(memory.measures);
-        self.entered = !self.wired || memory.entered;
+        self.entered = memory.entered;
         self.catching_up = self.wired && memory.entered && !memory.retired;
     }
 
@@ -138,16 +138,30 @@ impl HardwareClient {
         self.absent
     }
 
-    /// Registers the robot; the answer is its real position, and the area.
+    /// True if the robot stands on the floor; without hardware it does not before it has entered.
+    pub(crate) fn is_on_floor(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<bool>, Failure> {
+        if !self.wired {
+            return Ok(Reply::Answer(false));
+        }
+        let answer = self.hardware.is_on_floor(context, robot);
+        self.absent = is_absent(&answer);
+        self.patience.note(self.absent || answer.is_ok(), busy(&answer), context);
+        reply(answer)
+    }
+
+    /// Registers the robot; the answer is its real position.
     pub(crate) fn enter(
         &mut self,
         context: &mut Context<'_>,
         robot: u32,
         name: &str,
         block: Block,
-    ) -> Result<Reply<(Block, Option<Map>)>, Failure> {
+    ) -> Result<Reply<Block>, Failure> {
+        if !self.wired {
+            self.entered = true;
+        }
         if self.entered {
-            return Ok(Reply::Answer((block, None)));
+            return Ok(Reply::Answer(block));
         }
         let answer = self.hardware.enter(context, robot, name.to_owned(), block);
         self.absent = is_absent(&answer);
@@ -157,9 +171,8 @@ impl HardwareClient {
             Reply::Answer(block) => block,
             Reply::Later => return Ok(Reply::Later),
         };
-        let Reply::Answer(map) = self.area(context)? else { return Ok(Reply::Later) };
         self.entered = true;
-        Ok(Reply::Answer((block, Some(map))))
+        Ok(Reply::Answer(block))
     }
 
     /// The running action.

@@ -102,8 +102,8 @@ impl Loop for SafePathFollower {
         if let Some(zones) = &mut knowledge.zones {
             zones.positions = Some(context.publish(&POSITION)?);
         }
-        if context.goes_on() {
-            // They know more than this loop yet does.
+        if context.goes_on() || knowledge.waits_to_enter() {
+            // They know more than this loop yet does, or the robot is not on the floor.
             return Ok(());
         }
         // All robots have to know which blocks are held before the first one moves.

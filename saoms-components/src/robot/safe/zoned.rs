@@ -1,14 +1,14 @@
 //! What a robot asks of the zones of its site.
 
-use saoms_api::{Context, Failure};
+use saoms_api::{Context, Failure, info};
 
 use super::dead_end::way_out;
 use super::leg::Urgency;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
 use crate::messages::{IMMOVABLE, Position, Priority, Standing};
-use crate::robot::HEARD;
-use crate::robot::RobotKnowledge;
+use crate::robot::hardware_client::Reply;
+use crate::robot::{ASSISTANCE, HEARD, RobotKnowledge};
 use crate::zone::{MOST_AHEAD, Wish};
 
 /// Number of executions after which a robot repeats its state.
@@ -26,12 +26,64 @@ impl RobotKnowledge {
         let RobotKnowledge { zones: Some(zones), routes, hardware, number, block, next, .. } = self else {
             return Ok(());
         };
-        zones.enter(context, *number, *block);
+        zones.stand(context, *number, *block);
         if zones.hear(context, routes.map()) {
             let begun = if hardware.is_moving() { 2 } else { 1 };
             zones.turn(begun, |from, to| routes.between(from, to));
         }
         if routes.map().is_some_and(|map| map.size() <= HEARD) { Ok(()) } else { zones.hear_around(context, *next) }
+    }
+
+    /// True if the robot is not on the floor, and waits until it may enter it.
+    pub(in crate::robot) fn waits_to_enter(&self) -> bool {
+        self.zones.as_ref().is_some_and(|zones| zones.waits_to_enter())
+    }
+
+    /// Asks the zones of the site for the block where the robot starts, unless it stands on the floor already. False
+    /// while it has to wait.
+    ///
+    /// # Errors
+    /// The messages cannot be sent, or the hardware cannot be asked.
+    pub(in crate::robot) fn may_enter(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
+        let Some(zones) = &mut self.zones else { return Ok(true) };
+        if zones.is_new() {
+            let start = self.block;
+            // The hardware tells what is wrong with a start outside of the map.
+            let is_free = self.routes.map().is_none_or(|map| map.contains(start) && map.is_free(start));
+            match self.hardware.is_on_floor(context, self.number)? {
+                Reply::Later => {}
+                Reply::Answer(is_on_floor) if is_on_floor || !is_free => return Ok(true),
+                Reply::Answer(_) => zones.wait_to_enter(context, self.number, start),
+            }
+            // That is in `initialize`, as a rule, where zones have not spoken yet.
+            return Ok(false);
+        }
+        if !zones.waits_to_enter() {
+            return Ok(true);
+        }
+        if self.routes.map().is_none_or(|map| map.size() > HEARD) {
+            zones.hear_around(context, self.block)?;
+        }
+        zones.hear(context, self.routes.map());
+        if !zones.waits_to_enter() {
+            context.alert_over(ASSISTANCE, "");
+            return Ok(true);
+        }
+        match zones.waits_in_vain() {
+            None => {}
+            Some(Some(other)) => context.alert(
+                ASSISTANCE,
+                "",
+                format_args!(
+                    "waits to enter the floor at {}, where robot {other} is: send that one elsewhere",
+                    self.block
+                ),
+            ),
+            Some(None) => info!(context, "waits to enter the floor at {}, until a zone grants it", self.block),
+        }
+        let wish = Wish { charger: self.charge_block, standing: Standing::Enters, ..Wish::default() };
+        zones.ask(context, wish)?;
+        Ok(false)
     }
 
     /// Sends what zones have to know.
@@ -68,7 +120,7 @@ impl RobotKnowledge {
     pub(in crate::robot) fn leave_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let (charger, begun) = (self.charge_block, self.begun_blocks());
         let Some(zones) = &mut self.zones else { return Ok(()) };
-        if self.gone {
+        if self.gone || zones.waits_to_enter() {
             return zones.leave_floor(context, charger);
         }
         zones.leave(begun);

@@ -21,6 +21,9 @@ const REPEAT: u32 = 4;
 /// The same for a robot that waits for a grant.
 const REPEAT_WAITING: u32 = 2;
 
+/// Number of executions after which a robot says that it cannot enter the floor.
+const LONG: u32 = 50;
+
 /// Distance within which the robot hears grants, in blocks: they are sent to where the zone knows that it is.
 const HEARING: u32 = 12;
 
@@ -30,7 +33,7 @@ const SLACK: u32 = 4;
 /// A robot's passage through zones, and the topics on which it speaks with them.
 #[derive(Debug)]
 pub(crate) struct ZoneClient {
-    /// `None` until the robot is on the floor.
+    /// `None` until the robot is on the floor, or asks to enter it.
     passage: Option<Passage>,
     territories: Subscription<Territory>,
     grants: Subscription<Grant>,
@@ -64,6 +67,8 @@ pub(crate) struct ZoneClient {
     waiting: BTreeMap<(u32, u32), InTheWay>,
     latency: Latency,
     hears_around: Option<Block>,
+    /// Number of executions in which it waited to enter the floor.
+    waited: u32,
 }
 
 /// What a robot goes on from after a failure.
@@ -71,6 +76,8 @@ pub(crate) struct ZoneClient {
 pub(crate) struct ZoneMemory {
     incarnation: u64,
     held: Vec<HeldMemory>,
+    /// True if it waits until it may enter the floor.
+    enters: bool,
     territories: Vec<Territory>,
     said_lost: Option<bool>,
     said_charger: Block,
@@ -140,6 +147,7 @@ impl ZoneClient {
             waiting: BTreeMap::new(),
             latency: Latency::default(),
             hears_around: None,
+            waited: 0,
         }))
     }
 
@@ -154,6 +162,7 @@ impl ZoneClient {
         ZoneMemory {
             incarnation: passage.incarnation(),
             held: held.collect(),
+            enters: passage.enters(),
             territories: passage.territories().to_vec(),
             said_lost: self.said_lost,
             said_charger: self.said_charger,
@@ -165,7 +174,7 @@ impl ZoneClient {
         }
     }
 
-    /// The same while the robot is on the floor.
+    /// The same once the robot is on the floor, or asks to enter it.
     pub(crate) fn save(&self) -> Option<ZoneMemory> {
         self.passage.as_ref().map(|passage| self.memory(passage))
     }
@@ -179,20 +188,39 @@ impl ZoneClient {
             heard: link.heard,
         });
         let (incarnation, territories) = (memory.incarnation, memory.territories);
-        self.passage = Some(Passage::with(robot, incarnation, held.collect(), territories, links.collect()));
+        let held = (held.collect(), memory.enters);
+        self.passage = Some(Passage::with(robot, incarnation, held, territories, links.collect()));
         self.is_asked = true;
         (self.said_lost, self.said_charger) = (memory.said_lost, memory.said_charger);
         (self.goal, self.aimed) = (memory.goal, memory.aimed);
         (self.in_the_way, self.latency) = (memory.in_the_way, memory.latency);
     }
 
-    /// The robot enters the floor at a block, without memory of grants to an earlier incarnation of it.
-    pub(crate) fn enter(&mut self, context: &Context<'_>, robot: u32, block: Block) {
-        if self.passage.is_none() {
-            let born = context.date().unwrap_or_else(|| context.now().since(Time::START));
-            let incarnation = u64::try_from(born.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
-            self.passage = Some(Passage::new(robot, incarnation, block));
-        }
+    /// The robot stands on a block of the floor, without memory of grants to an earlier incarnation of it.
+    pub(crate) fn stand(&mut self, context: &Context<'_>, robot: u32, block: Block) {
+        self.passage.get_or_insert_with(|| Passage::new(robot, incarnation(context), block));
+    }
+
+    /// The robot is not on the floor, and wants to enter it at a block.
+    pub(crate) fn wait_to_enter(&mut self, context: &Context<'_>, robot: u32, block: Block) {
+        self.passage.get_or_insert_with(|| Passage::entering(robot, incarnation(context), block));
+    }
+
+    /// True if the robot has neither a place on the floor, nor asked for one.
+    pub(crate) fn is_new(&self) -> bool {
+        self.passage.is_none()
+    }
+
+    /// The robot waits until it may enter the floor.
+    pub(crate) fn waits_to_enter(&self) -> bool {
+        self.passage.as_ref().is_some_and(Passage::enters)
+    }
+
+    /// Counts an execution in which the robot waits to enter the floor; once it has waited for so many, returns the
+    /// robot on its block, if there is one.
+    pub(super) fn waits_in_vain(&mut self) -> Option<Option<u32>> {
+        self.waited += 1;
+        (self.waited == LONG).then(|| self.in_the_way.map(|wait| wait.robot))
     }
 
     /// Takes in what zones say. True if there are grants for an earlier goal among them, whose blocks may lead
@@ -432,4 +460,10 @@ impl ZoneClient {
         };
         context.send(&self.presences, presence)
     }
+}
+
+/// A number greater than those of all earlier incarnations of a robot.
+fn incarnation(context: &Context<'_>) -> u64 {
+    let born = context.date().unwrap_or_else(|| context.now().since(Time::START));
+    u64::try_from(born.as_nanos()).unwrap_or(u64::MAX).saturating_add(1)
 }

@@ -4,11 +4,12 @@
 //! In each state that can be reached no two robots hold the same block, and from each state all robots can still reach
 //! their goals.
 
+mod mixer;
 mod numbering;
 mod scenarios;
 
 use std::collections::{BTreeSet, HashMap};
-use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+use std::hash::{BuildHasherDefault, Hash, Hasher};
 
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger};
@@ -17,6 +18,7 @@ use super::passage::{Passage, Wish};
 use super::plan::plan;
 use crate::grid::{Block, Map};
 use crate::messages::{ClearTerm, Grant, GrantRequest, Standing, Territory};
+use mixer::Mixer;
 
 type Spot = (i32, i32);
 
@@ -28,6 +30,8 @@ struct Scenario {
     zones: &'static [(i32, u32)],
     /// Start and goal of each robot.
     robots: &'static [(Spot, Spot)],
+    /// Number of the last robots that are not on the floor at first, and want to enter it.
+    entering: usize,
     faults: Faults,
     /// Number of blocks that are granted ahead.
     ahead: usize,
@@ -81,6 +85,16 @@ struct Robot {
     is_gone: bool,
 }
 
+impl Robot {
+    fn is_on_floor(&self) -> bool {
+        !self.is_gone && !self.passage.enters()
+    }
+
+    fn is_done(&self) -> bool {
+        self.is_gone || self.is_on_floor() && self.at == self.goal && self.moving.is_none()
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Message {
     /// To this robot.
@@ -106,8 +120,10 @@ impl Message {
     }
 }
 
-fn hash(of: &impl std::hash::Hash) -> u64 {
-    BuildHasherDefault::<DefaultHasher>::default().hash_one(of)
+fn hash(of: &impl Hash) -> u64 {
+    let mut mixer = Mixer::default();
+    of.hash(&mut mixer);
+    mixer.finish()
 }
 
 impl Scenario {
@@ -119,9 +135,11 @@ impl Scenario {
             maneuvers: Vec::new(),
             unheard: robots.clone(),
         });
+        let standing = self.robots.len() - self.entering;
         let fleet = self.robots.iter().zip(1..).map(|(&(at, goal), robot)| {
             let (at, goal) = (Block::new(at.0, at.1), Block::new(goal.0, goal.1));
-            Robot { passage: Passage::new(robot, 1, at), at, moving: None, goal, needed: self.needed, is_gone: false }
+            let begin = if robot as usize <= standing { Passage::new } else { Passage::entering };
+            Robot { passage: begin(robot, 1, at), at, moving: None, goal, needed: self.needed, is_gone: false }
         });
         let mut state = State {
             zones: zones.collect(),
@@ -152,7 +170,7 @@ impl Scenario {
     /// Explores all states, and returns their number.
     fn explore(&self) -> usize {
         let mut ground = Ground::new(Map::read(self.map).unwrap());
-        let mut known: HashMap<u64, u32> = HashMap::new();
+        let mut known: HashMap<u64, u32, BuildHasherDefault<Mixer>> = HashMap::default();
         let mut before: Vec<Vec<u32>> = Vec::new();
         let mut done: Vec<u32> = Vec::new();
         let mut open = Vec::new();
@@ -162,7 +180,7 @@ impl Scenario {
         open.push((0, start));
         while let Some((number, state)) = open.pop() {
             state.check(self.name);
-            if state.robots.iter().all(|robot| robot.is_gone || robot.at == robot.goal && robot.moving.is_none()) {
+            if state.robots.iter().all(Robot::is_done) {
                 done.push(number);
             }
             for mut next in state.successors(&mut ground, self) {
@@ -196,7 +214,7 @@ impl Scenario {
 impl State {
     /// No two robots hold the same block, and each holds only what its zone knows.
     fn check(&self, name: &str) {
-        let on_floor = self.robots.iter().filter(|robot| !robot.is_gone);
+        let on_floor = self.robots.iter().filter(|robot| robot.is_on_floor());
         let held = on_floor.flat_map(|robot| [Some(robot.at), robot.moving].into_iter().flatten());
         let mut blocks: Vec<Block> = held.collect();
         let all = blocks.len();
@@ -243,12 +261,13 @@ impl State {
     fn request(&mut self, robot: usize, again: bool) {
         let one = &mut self.robots[robot];
         let rank = u64::try_from(robot).unwrap();
-        let goal = Some(one.goal).filter(|goal| *goal != one.passage.end() && !one.is_gone);
+        let enters = one.passage.enters();
+        let goal = Some(one.goal).filter(|goal| *goal != one.passage.end() && !one.is_gone && !enters);
         let wish = Wish {
             goal,
             charger: one.goal,
             rank: if goal.is_some() { 10 - rank } else { 0 },
-            standing: Standing::MakesWay,
+            standing: if enters && !one.is_gone { Standing::Enters } else { Standing::MakesWay },
             ahead: one.needed,
             aside: None,
         };
@@ -323,33 +342,22 @@ impl State {
         }
     }
 
-    /// Somebody puts a robot that is gone back where it started, where no other one drives.
+    /// Somebody starts a robot that is gone again: it enters the floor where it started at first.
     fn put_back(&self, robot: usize, rules: &Scenario) -> Option<State> {
         let (x, y) = rules.robots[robot].0;
         let start = Block::new(x, y);
-        let drives = |other: &Robot| !other.is_gone && other.passage.held().iter().any(|held| held.step.block == start);
-        let number = self.robots[robot].passage.robot();
-        let is_granted = |zone: &Zone| zone.ledger.holder(start).is_some_and(|holder| holder != number);
-        if !self.robots[robot].is_gone || self.robots.iter().any(drives) || self.zones.iter().any(is_granted) {
+        if !self.robots[robot].is_gone {
             return None;
         }
         let mut back = self.clone();
         back.faults.back -= 1;
         let one = &mut back.robots[robot];
-        one.passage = Passage::new(number, one.passage.incarnation() + 1, start);
+        one.passage = Passage::entering(one.passage.robot(), one.passage.incarnation() + 1, start);
         (one.is_gone, one.at, one.moving) = (false, start, None);
         for zone in &self.zones {
             one.passage.hear_territory(zone.ledger.territory());
         }
         back.answer(robot);
-        // Until its zone has heard of it, nothing keeps others from its block.
-        for message in back.network.clone() {
-            if let Message::Request(request) = message
-                && (request.robot, request.incarnation) == (number, back.robots[robot].passage.incarnation())
-            {
-                back.zones[request.zone as usize - 1].ledger.hear(&request);
-            }
-        }
         Some(back)
     }
 
@@ -397,7 +405,8 @@ impl State {
                 crashed.faults.robots -= 1;
                 let one = &mut crashed.robots[robot];
                 one.moving = None;
-                one.passage = Passage::new(one.passage.robot(), one.passage.incarnation() + 1, one.at);
+                let begin = if one.is_on_floor() { Passage::new } else { Passage::entering };
+                one.passage = begin(one.passage.robot(), one.passage.incarnation() + 1, one.at);
                 // State topics give it the territories again.
                 for zone in &self.zones {
                     one.passage.hear_territory(zone.ledger.territory());

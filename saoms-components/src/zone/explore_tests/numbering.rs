@@ -1,7 +1,5 @@
 //! States that differ in what makes no difference are one.
 
-use std::collections::{BTreeMap, HashMap};
-
 use super::{Message, Robot, State, Zone, hash};
 use crate::messages::{GrantRequest, link};
 use crate::zone::ledger::Heard;
@@ -47,19 +45,16 @@ impl State {
     /// numbers above all others, so that states that differ in their numbers alone go on alike.
     pub(super) fn renumber(&mut self) {
         self.drop_answered();
-        let mut requests: HashMap<u64, BTreeMap<u64, u64>> = HashMap::new();
-        let mut steps = requests.clone();
+        let (mut requests, mut steps) = (Numbers::default(), Numbers::default());
         self.visit(|of, link, number| {
             let numbers = if of == Numbered::Request { &mut requests } else { &mut steps };
-            numbers.entry(link).or_default().insert(*number, 0);
+            numbers.used.extend([(link, 0), (link, *number)]);
         });
-        for numbers in requests.values_mut().chain(steps.values_mut()) {
-            numbers.entry(0).or_default();
-            numbers.values_mut().zip(0..).for_each(|(new, place)| *new = place);
-        }
+        requests.sort();
+        steps.sort();
         self.visit(|of, link, number| {
             let numbers = if of == Numbered::Request { &requests } else { &steps };
-            *number = numbers[&link][number];
+            *number = numbers.rank(link, *number);
         });
         self.network.sort_by_cached_key(hash);
     }
@@ -86,6 +81,7 @@ impl State {
                 of_request(&mut one.said, &mut see);
                 one.said.link = before;
             }
+            let held = (held, passage.enters());
             *passage = Passage::with(robot, passage.incarnation(), held, passage.territories().to_vec(), links);
         }
         for Zone { ledger, .. } in &mut self.zones {
@@ -115,4 +111,23 @@ impl State {
 enum Numbered {
     Request,
     Step,
+}
+
+/// The numbers that are used, by link.
+#[derive(Default)]
+struct Numbers {
+    used: Vec<(u64, u64)>,
+}
+
+impl Numbers {
+    fn sort(&mut self) {
+        self.used.sort_unstable();
+        self.used.dedup();
+    }
+
+    /// How many numbers of a link are below this one.
+    fn rank(&self, link: u64, number: u64) -> u64 {
+        let place = |number: u64| self.used.binary_search(&(link, number)).unwrap();
+        (place(number) - place(0)) as u64
+    }
 }

@@ -8,6 +8,7 @@ const SQUARE: Scenario = Scenario {
     map: "..\n..",
     zones: &[(0, 2)],
     robots: &[((0, 0), (1, 1)), ((1, 1), (0, 0))],
+    entering: 0,
     faults: NONE,
     ahead: 1,
     needed: 0,
@@ -106,5 +107,20 @@ fn robots_that_are_taken_off_the_floor_lead_to_no_collision_and_no_standstill() 
 #[test]
 fn robots_that_are_gone_and_come_back_lead_to_no_collision_and_no_standstill() {
     let faults = Faults { gone: 1, back: 1, ..NONE };
-    explore(&[BORDER, SQUARE, ROUND].map(|scenario| Scenario { faults, arriving: 1, ..scenario }));
+    explore(&[BORDER, SQUARE].map(|scenario| Scenario { faults, arriving: 1, ..scenario }));
+}
+
+/// A robot that drives over the block where another one wants to enter the floor.
+const ENTRY: Scenario =
+    Scenario { name: "entry", robots: &[((0, 0), (1, 1)), ((1, 0), (0, 1))], entering: 1, ..SQUARE };
+
+#[test]
+fn robots_that_enter_the_floor_among_others_do_not_collide_or_stand_still() {
+    explore(&[ENTRY, Scenario { entering: 2, ..SQUARE }, Scenario { entering: 1, ..TRAIN }]);
+}
+
+#[test]
+fn robots_and_zones_that_fail_while_a_robot_enters_the_floor_lead_to_no_collision_and_no_standstill() {
+    let faults = [Faults { robots: 1, ..NONE }, Faults { zones: 1, ..NONE }, Faults { gone: 1, back: 1, ..NONE }];
+    explore(&faults.map(|faults| Scenario { faults, arriving: 1, ..ENTRY }));
 }
