@@ -14,7 +14,7 @@ use super::scenario::line::{read_outside, split};
 use super::scenario::{Before, Vocabulary};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
-use crate::rules::scenario::{judge_outage, no_work};
+use crate::rules::scenario::{judge_luggage, judge_outage, judge_robot, no_work};
 use crate::text::{TextFault, bytes};
 
 submit! {
@@ -165,8 +165,10 @@ fn place_is_known(line: &Line) -> Result<(), TextFault> {
 fn judge(fleet: &FleetView<'_>, events: &Events, line: &str) -> Result<(), LineFault> {
     for part in split(line) {
         let Ok((read, _)) = read_outside(part, Before::Event, Vocabulary::with(events)) else { continue };
-        let offset = bytes(line, part).start + read.bytes.start;
-        judge_outage(fleet, &read.event).map_err(|fault| fault.moved(offset))?;
+        let offset = bytes(line, part).start;
+        judge_outage(fleet, &read.event).map_err(|fault| fault.moved(offset + read.bytes.start))?;
+        let judged = judge_robot(fleet, &read, part).and_then(|()| judge_luggage(fleet, &read.event));
+        judged.map_err(|fault| fault.moved(offset))?;
     }
     Ok(())
 }

@@ -2,15 +2,16 @@
 
 use std::collections::HashMap;
 
+use saoms_api::extension::LineFault;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::event_block;
-use crate::environment::{Spanned, Spot};
+use crate::environment::{EventSpec, Spanned, Spot};
 use crate::messages::AREA;
 use crate::rules::budget::Budget;
 use crate::rules::hearing::together;
-use crate::rules::map::{LuggageLine, WorldMap, area, by_events, rows};
+use crate::rules::map::{LuggageLine, WorldMap, area, areas, by_events, rows};
 use crate::rules::robots::unless_elsewhere;
 use crate::world::World;
 
@@ -56,6 +57,28 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     }
     findings.extend(event_block::check(fleet));
     findings
+}
+
+/// Judges an event that does not stand in a scenario. Places are bytes of its text.
+///
+/// # Errors
+/// It is luggage where no robot can be.
+pub(crate) fn judge_luggage(fleet: &FleetView<'_>, event: &EventSpec) -> Result<(), LineFault> {
+    let EventSpec::Luggage { from, to } = event else { return Ok(()) };
+    let mut areas = areas(fleet);
+    let (Some(area), None) = (areas.next(), areas.next()) else { return Ok(()) };
+    if fleet.misses::<World>() {
+        return Ok(());
+    }
+    for spot in [from, to] {
+        let problem = spot.value.block().and_then(|block| Some((block, area.problem(block)?)));
+        if let Some((block, problem)) = problem {
+            let fault =
+                LineFault::new(spot.bytes.clone(), format!("luggage cannot be at {block}: this block is {problem}"));
+            return Err(fault.help("choose a free block of the map: robots cannot enter other blocks"));
+        }
+    }
+    Ok(())
 }
 
 /// The names on the bus on which areas are said, each with the first component that says one.

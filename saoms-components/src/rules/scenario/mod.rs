@@ -9,4 +9,6 @@ pub(super) mod strain;
 pub(super) mod unknown_robot;
 pub(super) mod unserved;
 
+pub(crate) use luggage::judge_luggage;
 pub(crate) use strain::judge_outage;
+pub(crate) use unknown_robot::judge_robot;

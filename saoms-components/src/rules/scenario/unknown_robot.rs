@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use saoms_api::extension::LineFault;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
 use super::strain;
-use crate::environment::{Environment, EventSpec, RandomRange, Scenario, Spanned};
+use crate::environment::{Environment, EventSpec, Line, RandomRange, Scenario, Spanned};
 use crate::messages::{ENVIRONMENT, FAULT};
 use crate::robot::Robot;
 use crate::rules::budget::Budget;
@@ -46,18 +47,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         // Built on demand, since most scenarios have no breakdowns.
         let mut known: Option<Names<'_>> = None;
         for line in scenario.lines() {
-            let robot = match &line.event {
-                EventSpec::Breakdown(robot) | EventSpec::Gone(robot) | EventSpec::Visit { by: Some(robot), .. } => {
-                    robot.clone()
-                }
-                event => match strain::robots_of(fleet, event) {
-                    Some((value, field)) => {
-                        let start = line.bytes.start;
-                        Spanned { value, bytes: start + field.value.bytes.start..start + field.value.bytes.end }
-                    }
-                    None => continue,
-                },
-            };
+            let Some(robot) = robot_of(fleet, line) else { continue };
             if known.is_none() && !budget.admit(NAME * robots.len()) {
                 return findings;
             }
@@ -69,6 +59,38 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// Judges a line that does not stand in a scenario. Places are bytes of the text.
+///
+/// # Errors
+/// Its event is for a robot that is not in the fleet.
+pub(crate) fn judge_robot(fleet: &FleetView<'_>, line: &Line, text: &str) -> Result<(), LineFault> {
+    if may_be_others(fleet) || has_broker(fleet) {
+        return Ok(());
+    }
+    let Some(robot) = robot_of(fleet, line) else { return Ok(()) };
+    let all = robots(fleet);
+    let names = Names::among(fleet, all.iter().collect(), Vec::new(), ENVIRONMENT.name());
+    let written =
+        Written { text: &text[robot.bytes.clone()], value: robot.value, place: 0, bytes: robot.bytes.clone() };
+    let finding = check_name(fleet, &names, &written, Severity::Error, &mut Budget::default());
+    let Some(finding) = finding.filter(|one| one.own_severity() == Some(Severity::Error)) else { return Ok(()) };
+    let (instead, help) = (finding.replacement().map(str::to_owned), finding.helps().first().cloned());
+    Err(LineFault { bytes: robot.bytes, message: finding.message().to_owned(), instead, help })
+}
+
+/// The robot that a line is about, or numbers of which it draws one.
+fn robot_of(fleet: &FleetView<'_>, line: &Line) -> Option<Spanned<RandomRange<u32>>> {
+    match &line.event {
+        EventSpec::Breakdown(robot) | EventSpec::Gone(robot) | EventSpec::Visit { by: Some(robot), .. } => {
+            Some(robot.clone())
+        }
+        event => strain::robots_of(fleet, event).map(|(value, field)| {
+            let start = line.bytes.start;
+            Spanned { value, bytes: start + field.value.bytes.start..start + field.value.bytes.end }
+        }),
+    }
 }
 
 /// True if the rule about scenarios without effect tells that there is no robot at all: which of them one event means
@@ -122,6 +144,15 @@ impl<'r> Names<'r> {
             topics.is_empty() || topics.contains(fleet.components()[robot.index].topic(FAULT.name()))
         };
         let (robots, deaf): (Vec<&FleetRobot>, Vec<&FleetRobot>) = all.iter().partition(hears);
+        Names::among(fleet, robots, deaf, events)
+    }
+
+    fn among(
+        fleet: &FleetView<'r>,
+        robots: Vec<&'r FleetRobot>,
+        deaf: Vec<&'r FleetRobot>,
+        events: &'r str,
+    ) -> Names<'r> {
         let mut by_name = HashMap::with_capacity(robots.len());
         for robot in &robots {
             by_name.entry(robot.properties.id.as_str()).or_insert(robot.number);

@@ -154,9 +154,9 @@ fn a_robot_without_another_charger_waits_for_its_own() {
 fn faults_of_robots_that_do_not_exist_are_told_and_counted() {
     let folder = empty_folder("strain-ignored");
     fs::write(folder.join("hall.composite"), hall("at 1s luggage (3,1) to (3,9)", "")).unwrap();
-    fs::write(folder.join("faults.txt"), "at 1s slow robot=9 factor=2\nat 1s drain robot=8 percent=2\n").unwrap();
+    fs::write(folder.join("events.txt"), "at 1s slow robot=9 factor=2\nat 1s drain robot=8 percent=2\n").unwrap();
     let output =
-        saoms_in(&folder, &["run", "hall.composite", "--virtual", "--faults", "faults.txt", "--report", "r.json"]);
+        saoms_in(&folder, &["run", "hall.composite", "--virtual", "--events", "events.txt", "--report", "r.json"]);
     assert_eq!(output.status.code(), Some(0));
     let report: Value = serde_json::from_str(&fs::read_to_string(folder.join("r.json")).unwrap()).unwrap();
     assert_eq!(report["faults"]["ignored"], 2, "{report}");
@@ -176,6 +176,9 @@ at 2s for 0s lose 20 %
 at 2s for 0 ms stall Robot1
 at 2s loose 20 %
 at 2s storm
+at 3s breakdown Robot9
+at 3s gone 1..9; at 4s slow robot=9 factor=2
+at 4s luggage (3,1) to (99,1)
 ";
     fs::write(folder.join("faults.txt"), faults).unwrap();
     let output = saoms_in(&folder, &["run", "hall.composite", "--virtual", "--faults", "faults.txt"]);
@@ -214,8 +217,20 @@ at 2s storm
         error: faults.txt:10:7: found `storm`, expected `luggage`, `visit`, `landing`, `takeoff`, `breakdown`, `gone`, `end`, `drain`, `outage`, `slow`, `lose`, `violate`, `delay`, `jitter`, `duplicate`, `reorder`, `cut`, `part`, `stall`, `fail`, `crash` or `drift`
             at 2s storm
                   ^^^^^
+        error: faults.txt:11:17: the fleet has no robot 9
+            at 3s breakdown Robot9
+                            ^^^^^^
+            = help: the robots are `Robot1`, `Robot2`
+        error: faults.txt:12:12: the fleet has only 2 of the robots from 1 to 9
+            at 3s gone 1..9; at 4s slow robot=9 factor=2
+                       ^^^^
+            = help: the robots are `Robot1`, `Robot2`
+        error: faults.txt:13:24: luggage cannot be at (99,1): this block is outside the map, which goes from (0,0) to (10,10)
+            at 4s luggage (3,1) to (99,1)
+                                   ^^^^^^
+            = help: choose a free block of the map: robots cannot enter other blocks
 
-        9 errors: nothing was started
+        12 errors: nothing was started
     "#]]
     .assert_eq(&told);
 }
