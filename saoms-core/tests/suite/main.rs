@@ -18,6 +18,7 @@ mod hold;
 mod inject;
 mod journal;
 mod kept;
+mod nodes;
 mod observer;
 mod order;
 mod orders;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::programs::{Program, Programs, component};
-use crate::support::{root, stdout};
+use super::programs::{Program, Programs, component, free_port};
+use crate::support::{root, saoms, stdout, text};
 
 /// Starts a node of a composite.
 fn start(programs: &Programs, composite: &str, node: &str, more: &[&str]) -> Arc<Program> {
@@ -114,4 +114,20 @@ fn robots_of_two_nodes_share_a_zone_of_a_third() {
         assert_eq!(printed.matches(&format!("deposited luggage {luggage} at")).count(), 1, "{}", programs.printed());
     }
     assert!(!programs.printed().contains("which was granted to"), "{}", programs.printed());
+}
+
+#[test]
+fn all_nodes_run_in_one_program_unless_one_is_named() {
+    let airport = root().join("composites/airport-nodes.composite");
+    let run = |more: &[&str]| text(&saoms(&[&["run", airport.to_str().unwrap(), "--for", "200ms"], more].concat()));
+    // Nobody else may listen at the usual port.
+    let port = free_port();
+    let (port, url) = (format!("port={port}"), format!("url=localhost:{port}"));
+    let whole = run(&["--set", &port, "--set", &url]);
+    let note = "all nodes run in this program, `control`, `floor`, `traffic`: `--node` runs one of them alone";
+    assert_eq!(whole.matches(note).count(), 1, "{whole}");
+    assert!(!run(&["--virtual"]).contains("all nodes"));
+    assert!(run(&["--virtual", "--node", "floor"]).contains("cannot be used with"));
+    let unknown = run(&["--node", "flor"]);
+    assert!(unknown.contains("replace `flor` with `floor`"), "{unknown}");
 }

@@ -267,7 +267,9 @@ impl Exchange {
     }
 
     fn is_agreed(&self) -> bool {
-        let there = self.peers.values().filter(|peer| peer.is_reachable).map(|peer| peer.vote);
+        // Who said that all is done, and vanished, has said so: its last sign of life may be lost.
+        let counts = |peer: &&Peer| peer.is_reachable || peer.vote == Vote::Done;
+        let there = self.peers.values().filter(counts).map(|peer| peer.vote);
         let mut is_done = self.was_done;
         for vote in there.chain([self.vote]) {
             match vote {

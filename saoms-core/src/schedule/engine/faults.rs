@@ -2,21 +2,36 @@
 
 use std::sync::Arc;
 
-use saoms_api::Cause;
-use saoms_api::event::fault::FaultCall;
+use saoms_api::event::fault::{FaultCall, is_named};
 use saoms_api::host::{SharedMessage, TopicKind};
+use saoms_api::{Cause, Level};
+use saoms_lang::assembly::ComponentSpec;
 
 use super::Engine;
 use super::slot::Slot;
 use crate::bus::{Link, TopicId};
 use crate::fault::{Arrival, End, FaultPlay, OnLink};
 use crate::observe::Occurrence;
+use crate::schedule::networks::Networks;
 
 fn end(number: u32, slot: &Slot) -> End<'_> {
     End { number, path: &slot.name, site: &slot.spec.site }
 }
 
+/// The same for one of this program or of another node.
+fn any_end<'e>(slots: &'e [Slot], networks: &'e Networks, number: u32) -> Option<End<'e>> {
+    if let Some(slot) = slots.get(number as usize) {
+        return Some(end(number, slot));
+    }
+    let (spec, _) = networks.elsewhere.get(number)?;
+    Some(End { number, path: &spec.path, site: &spec.site })
+}
+
 impl Engine {
+    fn end_of(&self, number: u32) -> Option<End<'_>> {
+        any_end(&self.slots, &self.networks, number)
+    }
+
     /// Begins a fault, which the journal has as the record `cause`.
     #[cold]
     pub(crate) fn begin_fault(&mut self, (call, cause): (&FaultCall, Cause), site: &str, now: u64) {
@@ -27,14 +42,30 @@ impl Engine {
             topics.into_iter().for_each(|topic| self.link(topic));
             return;
         }
-        let is_named = |slot: &Slot| {
+        let is_meant = |slot: &Slot| {
             slot.is_member()
                 && slot.policy.periodic
                 && (site.is_empty() || slot.spec.site == site)
-                && call.to.iter().any(|word| saoms_api::event::fault::is_named(&word.text, &slot.name))
+                && call.to.iter().any(|word| is_named(&word.text, &slot.name))
         };
-        let named = (0..).zip(&self.slots).filter(|(_, slot)| is_named(slot)).map(|(number, _)| number);
+        let named = (0..).zip(&self.slots).filter(|(_, slot)| is_meant(slot)).map(|(number, _)| number);
         self.faults.begin_tasks((call, cause), named, now);
+        self.note_faults_elsewhere(call, site, now);
+    }
+
+    /// Tells of components of other nodes that a fault names: it acts in the program that plays it.
+    fn note_faults_elsewhere(&mut self, call: &FaultCall, site: &str, now: u64) {
+        let is_meant = |spec: &ComponentSpec| {
+            (site.is_empty() || spec.site == site) && call.to.iter().any(|word| is_named(&word.text, &spec.path))
+        };
+        let mut named = self.networks.elsewhere.specs().map(|(_, spec)| spec).filter(|spec| is_meant(spec));
+        let Some(first) = named.next() else { return };
+        let text = format!(
+            "the fault `{call}` does not reach `{}`, which runs in node `{}`: give that program `--faults`",
+            first.path, first.node
+        );
+        drop(named);
+        self.note(now, Occurrence::Note { level: Level::Info, text });
     }
 
     /// Gives the readers of a topic that faults concern links of their own.
@@ -61,8 +92,8 @@ impl Engine {
         let sender = message.header().sender;
         self.publish(topic, message.clone(), now);
         for link in links {
-            // What a component hears of itself takes no way, and what comes from outside has none within the program.
-            if sender == link.component || sender as usize >= self.slots.len() {
+            // What a component hears of itself takes no way, and what comes from outside has no sender.
+            if sender == link.component || self.end_of(sender).is_none() {
                 self.publish(link.topic, message.clone(), now);
                 continue;
             }
@@ -79,15 +110,15 @@ impl Engine {
     }
 
     fn arrivals(&mut self, topic: TopicId, link: &Link, sender: u32, now: u64) -> Vec<Arrival> {
-        let Engine { faults, bus, slots, .. } = self;
-        let ends = slots.get(sender as usize).zip(slots.get(link.component as usize));
+        let Engine { faults, bus, slots, networks, .. } = self;
+        let ends = any_end(slots, networks, sender).zip(any_end(slots, networks, link.component));
         let Some((from, to)) = ends else { return Vec::new() };
         let on_link = OnLink {
             topic: (topic, bus.name(topic)),
             link: link.topic,
             is_event: bus.kind(topic) == TopicKind::Event,
-            from: end(sender, from),
-            to: end(link.component, to),
+            from,
+            to,
         };
         FaultPlay::arrivals(faults, &on_link, now)
     }

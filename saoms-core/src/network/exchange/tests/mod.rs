@@ -1,5 +1,6 @@
 //! Programs on a network that loses, repeats and delays what it carries.
 
+mod ending;
 mod hostile;
 mod lossy;
 

@@ -1,0 +1,46 @@
+//! When the work of a network is done.
+
+use std::collections::BTreeSet;
+
+use super::super::wire::{Alive, Vote};
+use super::super::{Exchange, Settings};
+use super::lossy::MILLISECOND;
+
+fn program(others: &[&str]) -> Exchange {
+    Exchange::new(Settings {
+        program: 1,
+        name: "own".to_owned(),
+        patience: 1_000 * MILLISECOND,
+        limit: 1 << 20,
+        components: BTreeSet::new(),
+        others: others.iter().map(|name| (*name).to_owned()).collect(),
+    })
+}
+
+fn alive(program: u64, name: &str, vote: Vote) -> Alive {
+    Alive { program, name: name.to_owned(), number: 1, patience: 1_000, vote: vote as u8, ..Alive::default() }
+}
+
+#[test]
+fn no_work_is_done_before_each_node_has_been_there() {
+    let mut own = program(&["gate-a", "gate-b"]);
+    own.vote(Vote::Open);
+    own.hear(&alive(2, "gate-a", Vote::Silent), 0);
+    assert_eq!(own.waits_for(), None, "it sees work itself");
+    own.vote(Vote::Done);
+    assert!(!own.is_done());
+    assert_eq!(own.waits_for(), Some(&BTreeSet::from(["gate-b".to_owned()])));
+    own.hear(&alive(3, "gate-b", Vote::Silent), 0);
+    assert_eq!((own.is_done(), own.waits_for()), (true, None));
+}
+
+#[test]
+fn a_program_that_said_that_all_is_done_and_vanished_has_said_so() {
+    let mut own = program(&[]);
+    own.vote(Vote::Silent);
+    own.hear(&alive(2, "work", Vote::Done), 0);
+    own.tick(10_000 * MILLISECOND);
+    assert!(own.is_done(), "its last sign of life was lost");
+    own.hear(&alive(3, "other", Vote::Open), 10_000 * MILLISECOND);
+    assert!(!own.is_done());
+}
