@@ -44,7 +44,7 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, C
         let part = PartOfFleet::of(&wanted);
         let mut engine = shared.lock();
         engine.networks.elsewhere.know(part, wanted.elsewhere);
-        engine.open_topics_of_takers();
+        engine.open_topics_of_others();
         wanted.components.into_iter().map(|spec| Some(Arc::new(engine.still_stopped(spec)))).collect()
     };
     let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));

@@ -4,8 +4,10 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use saoms_api::Cause;
+use saoms_api::extension::FailureNotice;
 use saoms_api::host::TopicDeclaration;
 use saoms_lang::assembly::ComponentSpec;
+use saoms_lang::registry::ClassTopic;
 
 use crate::journal::{node_of, of_node};
 use crate::report::PartOfFleet;
@@ -135,12 +137,19 @@ impl Engine {
         own.or_else(|| self.networks.elsewhere.names.get(number).map(Arc::from))
     }
 
-    /// Opens the topics by which components of other nodes take events: what raises one, and who sends one from
-    /// outside, may be in this program.
-    pub(in crate::schedule) fn open_topics_of_takers(&mut self) {
+    /// Opens the topics on which components of other nodes hear what no component sends, which may come from this
+    /// program: events, and notices of failures.
+    pub(in crate::schedule) fn open_topics_of_others(&mut self) {
         for (_, spec) in self.networks.elsewhere.specs().collect::<Vec<_>>() {
             let network = self.networks.of(&spec);
-            for (_, declared) in spec.class.declaration().taken().filter(|_| network != NO_NETWORK) {
+            if network == NO_NETWORK {
+                continue;
+            }
+            let own = spec.class.declaration();
+            let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
+            let is_noticed = |topic: &&ClassTopic| FailureNotice::linked().any(|one| one.topic.name == topic.name);
+            let noticed = own.subscribes.iter().chain(of_loops).filter(is_noticed);
+            for declared in own.taken().map(|(_, topic)| topic).chain(noticed) {
                 let name = spec.topic(&declared.name);
                 let schema = declared.schema.to_string();
                 let topic = TopicDeclaration {
