@@ -715,8 +715,12 @@ typedef struct SaomsTransportTable {
     // | --- | --- |
     // | `url` | where the network is, as the composite says it |
     // | `listen` | true: this program is the network's router, and listens at the url |
-    // | `user`, `password` | of the user; a listener asks for them; may be missing |
-    // | `tls` | `ca`, `certificate` and `key`: paths of files; may be missing |
+    // | `user`, `password` | of the user as which the program joins; may be missing |
+    // | `users` | of a listener: the users that it accepts, each with `user` and `password`; where it is missing, everybody is accepted |
+    // | `access` | of a listener: what each `user` may `put` and `subscribe`, lists of keys; where it is missing, everything |
+    // | `tls` | `ca`, `certificate` and `key`: paths of files; each may be missing. A listener with `ca` accepts only programs with a certificate that it vouches for |
+    //
+    // A transport that cannot do what one of these asks for has to refuse it. Passwords are printed nowhere.
     //
     // Waits for no longer than a second. `UNREACHABLE`: nobody answers at the url now, and the program tries again.
     // `FAILED`: it will not help to try again. Both with a text in `error`. A session that was opened connects again
@@ -725,6 +729,10 @@ typedef struct SaomsTransportTable {
                         const struct SaomsTransportEvents *events,
                         void **session,
                         struct SaomsSink error);
+    // Looks at settings, as those of `open`, without joining a network: before anything starts. Puts a JSON text into
+    // `faults`, a list of what cannot be used: objects with `setting` (`url`, `user`, `users`, `access`, `ca`,
+    // `certificate` or `key`) and `text`, what is wrong and what to do. Nothing, or an empty list: all can.
+    SaomsStatus (*judge)(struct SaomsBytes settings, struct SaomsSink faults);
     // Sends a message, with what the program says beside it, to all sessions of the network that subscribe to its
     // key, but not to this one. Must not wait. `FULL`: too much waits to be sent; the program keeps the message and
     // tries again. `urgent` is 1 for the few short messages, such as signs of life, that should overtake others.
@@ -734,7 +742,8 @@ typedef struct SaomsTransportTable {
                        struct SaomsBytes attachment,
                        uint32_t urgent,
                        struct SaomsSink error);
-    // Asks for the messages of all keys that fit, which are delivered with this token.
+    // Asks for the messages of all keys that fit, which are delivered with this token. No two subscriptions of a
+    // session have the same token.
     SaomsStatus (*subscribe)(void *session, struct SaomsBytes keys, uint64_t token, struct SaomsSink error);
     // Ends the subscription with this token.
     SaomsStatus (*unsubscribe)(void *session, uint64_t token, struct SaomsSink error);

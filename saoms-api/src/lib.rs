@@ -79,7 +79,7 @@ pub use failure::{CallError, Failure};
 pub use field::Field;
 pub use finding::{Finding, Place};
 pub use message::{Departed, Header, KnownPublisher, Message, Messages, Publisher, Region, Subscription, Topic};
-pub use property::{Properties, PropertyField};
+pub use property::{Properties, PropertyField, Secret};
 pub use report::{ReportValue, Work};
 pub use time::Time;
 

@@ -6,7 +6,7 @@ use std::ptr;
 
 use saoms_abi::{Bytes, Sink, Status, TRANSPORT_VERSION, TransportEvents, TransportTable};
 
-use crate::session::{Session, Settings};
+use crate::session::{Session, Settings, UNSERVED};
 
 /// The metadata.
 const TEXT: &str = concat!(
@@ -28,6 +28,7 @@ static TABLE: TransportTable = TransportTable {
     version: TRANSPORT_VERSION,
     metadata: Bytes::lend(&METADATA),
     open,
+    judge,
     put,
     subscribe,
     unsubscribe,
@@ -83,6 +84,20 @@ unsafe extern "C" fn open(
         let opened = Box::into_raw(Box::new(Session::open(&settings, *events)?));
         // SAFETY: the program has a place for the session.
         unsafe { ptr::write(session, opened.cast()) };
+        Ok(())
+    })
+}
+
+unsafe extern "C" fn judge(settings: Bytes, faults: Sink) -> Status {
+    guarded(faults, || {
+        // SAFETY: the program lends the text for the time of the call.
+        let text = unsafe { settings.get_text() }.map_err(Failure::failed)?;
+        let settings: Settings = serde_json::from_str(text).map_err(Failure::failed)?;
+        if let Some(setting) = settings.unserved() {
+            let found = serde_json::json!([{"setting": setting, "text": UNSERVED}]);
+            // SAFETY: the program waits for the call that it gave this sink to.
+            unsafe { faults.put(found.to_string().as_bytes()) };
+        }
         Ok(())
     })
 }

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use saoms_abi::{Bytes, Status, TransportEvents};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use crate::boundary::Failure;
 use crate::frame::{Frame, LONGEST, fits};
@@ -30,7 +31,23 @@ pub(crate) struct Settings {
     url: String,
     #[serde(default)]
     listen: bool,
+    /// What a relay does not have: it lets everybody in, and encrypts nothing.
+    user: Option<IgnoredAny>,
+    users: Option<IgnoredAny>,
+    access: Option<IgnoredAny>,
+    tls: Option<IgnoredAny>,
 }
+
+impl Settings {
+    /// The first setting that asks for what a relay does not have.
+    pub(crate) fn unserved(&self) -> Option<&'static str> {
+        let asked = [("user", &self.user), ("users", &self.users), ("access", &self.access), ("ca", &self.tls)];
+        asked.into_iter().find(|(_, given)| given.is_some()).map(|(name, _)| name)
+    }
+}
+
+/// Why a setting is refused.
+pub(crate) const UNSERVED: &str = "a relay has neither users nor TLS: use a network of `tls://`";
 
 /// A session: the threads of its connections share the rest.
 pub(crate) struct Session {
@@ -75,6 +92,9 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Session {
     pub(crate) fn open(settings: &Settings, events: TransportEvents) -> Result<Session, Failure> {
+        if settings.unserved().is_some() {
+            return Err(Failure::failed(UNSERVED));
+        }
         let address = settings.url.strip_prefix("relay://").unwrap_or(&settings.url).to_owned();
         let shared = Arc::new(Shared {
             address,

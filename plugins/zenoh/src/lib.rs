@@ -3,6 +3,8 @@
 //! A url `host:port` or `tcp/host:port` is TCP, `tls/host:port` is TLS. The program that listens is a router; the
 //! others are its clients. No multicast, no gossip: nothing is heard that the url does not name.
 
+mod causes;
+mod certificates;
 mod probe;
 mod session;
 mod settings;
@@ -36,6 +38,7 @@ static TABLE: TransportTable = TransportTable {
     version: TRANSPORT_VERSION,
     metadata: Bytes::lend(&METADATA),
     open,
+    judge,
     put,
     subscribe,
     unsubscribe,
@@ -84,9 +87,23 @@ unsafe extern "C" fn open(
         let settings: Settings = serde_json::from_str(text).map_err(Failure::failed)?;
         // SAFETY: the program lends the table for the time of the call; it is copied.
         let events = unsafe { events.as_ref() }.ok_or_else(|| Failure::failed("the events are null"))?;
-        let opened = Box::into_raw(Box::new(Session::open(&settings, *events)?));
+        let opened = Box::into_raw(Box::new(Session::open(settings, *events)?));
         // SAFETY: the program has a place for the session.
         unsafe { ptr::write(session, opened.cast()) };
+        Ok(())
+    })
+}
+
+unsafe extern "C" fn judge(settings: Bytes, faults: Sink) -> Status {
+    guarded(faults, || {
+        // SAFETY: the program lends the text for the time of the call.
+        let text = unsafe { settings.get_text() }.map_err(Failure::failed)?;
+        let settings: Settings = serde_json::from_str(text).map_err(Failure::failed)?;
+        let found = settings.unfit().into_iter().chain(certificates::judge(&settings));
+        let found: Vec<_> =
+            found.map(|(setting, text)| serde_json::json!({"setting": setting, "text": text})).collect();
+        // SAFETY: the program waits for the call that it gave this sink to.
+        unsafe { faults.put(serde_json::Value::from(found).to_string().as_bytes()) };
         Ok(())
     })
 }

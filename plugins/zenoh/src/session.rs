@@ -10,19 +10,29 @@ use saoms_abi::{Bytes, Status, TransportEvents};
 use zenoh::Wait as _;
 use zenoh::pubsub::Subscriber;
 use zenoh::qos::{CongestionControl, Priority};
-use zenoh::sample::{Locality, Sample};
+use zenoh::sample::{Locality, Sample, SampleKind};
 
-use super::Failure;
 use super::probe::probe;
 use super::settings::Settings;
+use super::{Failure, causes};
 
 /// Longest time for the end of a session.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Attempts in a row that fail for one reason before that is told.
+const CERTAIN: u32 = 3;
+
 /// The functions of the program, until the session closes.
-struct Program {
+pub(super) struct Program {
     /// `None` after the session was closed: no function is called any more. Whoever calls one holds this for reading.
     events: RwLock<Option<TransportEvents>>,
+    /// True for one that joins a router.
+    is_client: bool,
+    /// What was said last of the link.
+    link: Mutex<(bool, String)>,
+    /// Why the last attempt to connect again failed, and how many did in a row.
+    refused: Mutex<(String, u32)>,
+    settings: Settings,
 }
 
 // SAFETY: by the rules of the boundary, the functions may be called from any thread with the state that comes with
@@ -32,6 +42,31 @@ unsafe impl Send for Program {}
 unsafe impl Sync for Program {}
 
 impl Program {
+    /// Tells that the link is there or not, unless that was said.
+    fn tell_link(&self, is_up: bool, reason: &str) {
+        let mut link = self.link.lock().unwrap_or_else(PoisonError::into_inner);
+        if !self.is_client || *link == (is_up, reason.to_owned()) {
+            return;
+        }
+        *link = (is_up, reason.to_owned());
+        let events = self.events.read().unwrap_or_else(PoisonError::into_inner);
+        let Some(events) = *events else { return };
+        // SAFETY: the session is open, so that the state is valid; the text lives until the call returns.
+        unsafe { (events.link)(events.state, u32::from(is_up), Bytes::text(reason)) };
+    }
+
+    /// Tells why the link does not come again. A router that still has the old link refuses the new one for a moment.
+    pub(super) fn cannot_connect(&self, cause: &str) {
+        let failure = causes::failure(&self.settings, cause);
+        let mut refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = if refused.0 == failure.text { refused.1 } else { 0 };
+        *refused = (failure.text, before + 1);
+        // That nobody listens goes without saying.
+        if failure.status == Status::FAILED && refused.1 >= CERTAIN {
+            self.tell_link(false, &refused.0);
+        }
+    }
+
     fn deliver(&self, token: u64, sample: &Sample) {
         let events = self.events.read().unwrap_or_else(PoisonError::into_inner);
         let Some(events) = *events else { return };
@@ -54,18 +89,56 @@ pub(super) struct Session {
 
 impl Session {
     /// Joins a network, or opens one.
-    pub(super) fn open(settings: &Settings, events: TransportEvents) -> Result<Session, Failure> {
+    pub(super) fn open(settings: Settings, events: TransportEvents) -> Result<Session, Failure> {
+        let endpoint = settings.endpoint();
         if !settings.listen {
             probe(settings.address())?;
+            causes::listen(&endpoint);
         }
-        let zenoh = zenoh::open(settings.config()?).wait().map_err(|error| {
-            let status = if settings.listen { Status::FAILED } else { Status::UNREACHABLE };
+        let prepared = settings.prepare()?;
+        let zenoh = zenoh::open(prepared.config.clone()).wait().map_err(|error| {
+            if !settings.listen {
+                return causes::failure(&settings, &causes::last(&endpoint).unwrap_or_default());
+            }
             // Behind its words, Zenoh names a line of its source.
             let text = error.to_string();
-            let text = text.split(" at /").next().unwrap_or_default().to_owned();
-            Failure { status, text }
+            let text = text.split(" at /").next().unwrap_or_default();
+            Failure::failed(match () {
+                () if text.contains("Address already in use") => {
+                    "another program listens at this port: end it, or give the broker another `port`".to_owned()
+                }
+                () if text.contains("Cannot assign requested address") => {
+                    "this machine does not have this address: give the broker one of its own as `IP`, or `0.0.0.0` for all".to_owned()
+                }
+                () if text.contains("Permission denied") => "this user may not listen at this port: take one from 1024 on".to_owned(),
+                () => text.to_owned(),
+            })
         })?;
-        let program = Arc::new(Program { events: RwLock::new(Some(events)) });
+        let is_client = !settings.listen;
+        let link = Mutex::new((true, String::new()));
+        let program = Arc::new(Program {
+            events: RwLock::new(Some(events)),
+            is_client,
+            link,
+            refused: Mutex::default(),
+            settings,
+        });
+        if is_client {
+            causes::tell(&endpoint, Arc::downgrade(&program));
+            let weak = Arc::downgrade(&program);
+            let info = zenoh.info();
+            let listener = info.transport_events_listener().callback(move |event| {
+                let Some(program) = weak.upgrade() else { return };
+                match event.kind() {
+                    SampleKind::Put => {
+                        *program.refused.lock().unwrap_or_else(PoisonError::into_inner) = Default::default();
+                        program.tell_link(true, "");
+                    }
+                    SampleKind::Delete => program.tell_link(false, "the broker is away"),
+                }
+            });
+            listener.background().wait().map_err(Failure::failed)?;
+        }
         Ok(Session { zenoh, program, subscribers: Mutex::default() })
     }
 

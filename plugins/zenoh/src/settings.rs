@@ -1,5 +1,9 @@
 //! The settings of a session, and what they are for Zenoh.
 
+use std::fs::File;
+use std::io::Write as _;
+use std::os::fd::{AsRawFd as _, FromRawFd as _};
+
 use serde::Deserialize;
 use serde_json::{Value, json};
 use zenoh::Config;
@@ -12,27 +16,54 @@ const PATIENCE: u64 = 900;
 const LEASE: u64 = 1_000;
 
 /// What the program says when it opens a session.
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 pub(super) struct Settings {
     pub(super) url: String,
     #[serde(default)]
     pub(super) listen: bool,
-    user: Option<String>,
+    pub(super) user: Option<String>,
     password: Option<String>,
-    tls: Option<Tls>,
+    #[serde(default)]
+    users: Vec<Account>,
+    #[serde(default)]
+    access: Vec<Access>,
+    #[serde(default)]
+    pub(super) tls: Tls,
+}
+
+/// A user that a router accepts.
+#[derive(Deserialize)]
+struct Account {
+    user: String,
+    password: String,
+}
+
+/// The keys that a user may use.
+#[derive(Deserialize)]
+struct Access {
+    user: String,
+    put: Vec<String>,
+    subscribe: Vec<String>,
 }
 
 /// Paths of files.
-#[derive(Debug, Deserialize)]
-struct Tls {
-    ca: Option<String>,
-    certificate: Option<String>,
-    key: Option<String>,
+#[derive(Default, Deserialize)]
+pub(super) struct Tls {
+    pub(super) ca: Option<String>,
+    pub(super) certificate: Option<String>,
+    pub(super) key: Option<String>,
+}
+
+/// A configuration, with what it names while a session is opened with it.
+pub(super) struct Prepared {
+    pub(super) config: Config,
+    /// The users that a router accepts: Zenoh reads them from a file, which is in memory alone.
+    _users: Option<File>,
 }
 
 impl Settings {
     /// The endpoint in the terms of Zenoh.
-    fn endpoint(&self) -> String {
+    pub(super) fn endpoint(&self) -> String {
         match self.url.split_once("://") {
             Some((scheme, rest)) => format!("{scheme}/{rest}"),
             None => format!("tcp/{}", self.url),
@@ -44,8 +75,35 @@ impl Settings {
         self.url.split_once("://").map_or(&self.url, |(_, rest)| rest)
     }
 
+    /// True if the connection is encrypted.
+    pub(super) fn is_tls(&self) -> bool {
+        self.url.starts_with("tls://")
+    }
+
+    /// What Zenoh cannot take: the setting and why.
+    pub(super) fn unfit(&self) -> Option<(&'static str, String)> {
+        let own = self.user.iter().zip(&self.password).map(|(user, password)| ("user", user, password));
+        let all = own.chain(self.users.iter().map(|one| ("users", &one.user, &one.password)));
+        for (setting, user, password) in all {
+            let why = match () {
+                () if user.is_empty() || user.trim() != user || user.contains([':', '\n']) => {
+                    "a name without `:`, and without blanks at its ends"
+                }
+                () if password.is_empty() || password.trim() != password || password.contains('\n') => {
+                    "a password in one line, not empty, and without blanks at its ends"
+                }
+                () => continue,
+            };
+            return Some((setting, format!("user `{}` needs {why}", user.escape_debug())));
+        }
+        None
+    }
+
     /// The configuration of the session.
-    pub(super) fn config(&self) -> Result<Config, Failure> {
+    pub(super) fn prepare(&self) -> Result<Prepared, Failure> {
+        if let Some((_, why)) = self.unfit() {
+            return Err(Failure::failed(why));
+        }
         let mut config = Config::default();
         let mut set = |key: &str, value: Value| {
             config.insert_json5(key, &value.to_string()).map_err(|error| Failure::failed(format!("{key}: {error}")))
@@ -62,23 +120,77 @@ impl Settings {
         set("scouting/gossip/enabled", json!(false))?;
         set("scouting/delay", json!(0))?;
         set("transport/link/tx/lease", json!(LEASE))?;
+        let mut users = None;
         if let (Some(user), Some(password)) = (&self.user, &self.password) {
             set("transport/auth/usrpwd/user", json!(user))?;
             set("transport/auth/usrpwd/password", json!(password))?;
         }
-        if let Some(tls) = &self.tls {
-            let sides = ["listen", "connect"];
-            set("transport/link/tls/enable_mtls", json!(tls.ca.is_some() && tls.certificate.is_some()))?;
-            if let Some(ca) = &tls.ca {
+        if !self.users.is_empty() {
+            let file = self.users_in_memory().map_err(Failure::failed)?;
+            let path = format!("/proc/self/fd/{}", file.as_raw_fd());
+            set("transport/auth/usrpwd/dictionary_file", json!(path))?;
+            users = Some(file);
+        }
+        if !self.access.is_empty() {
+            set("access_control", self.access_control())?;
+        }
+        if self.is_tls() {
+            let Tls { ca, certificate, key } = &self.tls;
+            // A router asks for certificates, a client shows its own.
+            let is_mutual = if self.listen { ca.is_some() } else { certificate.is_some() };
+            set("transport/link/tls/enable_mtls", json!(is_mutual))?;
+            if let Some(ca) = ca {
                 set("transport/link/tls/root_ca_certificate", json!(ca))?;
             }
-            for side in sides {
-                if let (Some(certificate), Some(key)) = (&tls.certificate, &tls.key) {
-                    set(&format!("transport/link/tls/{side}_certificate"), json!(certificate))?;
-                    set(&format!("transport/link/tls/{side}_private_key"), json!(key))?;
-                }
+            if let (Some(certificate), Some(key)) = (certificate, key) {
+                set(&format!("transport/link/tls/{here}_certificate"), json!(certificate))?;
+                set(&format!("transport/link/tls/{here}_private_key"), json!(key))?;
             }
         }
-        Ok(config)
+        Ok(Prepared { config, _users: users })
+    }
+
+    /// A file in memory with the users, a line `user:password` each.
+    fn users_in_memory(&self) -> std::io::Result<File> {
+        // SAFETY: the name is a text with a zero at its end.
+        let descriptor = unsafe { libc::memfd_create(c"users".as_ptr(), libc::MFD_CLOEXEC) };
+        if descriptor < 0 {
+            return Err(std::io::Error::last_os_error());
+        }
+        // SAFETY: the descriptor is new, and nobody else's.
+        let mut file = unsafe { File::from_raw_fd(descriptor) };
+        for Account { user, password } in &self.users {
+            writeln!(file, "{user}:{password}")?;
+        }
+        Ok(file)
+    }
+
+    /// What the users may do, in the terms of Zenoh: what nobody allows is denied.
+    fn access_control(&self) -> Value {
+        let mut rules = Vec::new();
+        let (mut subjects, mut policies) = (Vec::new(), Vec::new());
+        for (number, Access { user, put, subscribe }) in self.access.iter().enumerate() {
+            let mut allow = |what: &str, message: &str, flow: &str, keys: &[String]| {
+                let id = format!("{number} {what}");
+                rules.push(json!({
+                    "id": id, "messages": [message], "flows": [flow], "permission": "allow", "key_exprs": keys,
+                }));
+                id
+            };
+            let ids = [
+                allow("sends", "put", "ingress", put),
+                // A client sends nothing that nobody has asked for.
+                allow("hears who reads", "declare_subscriber", "egress", put),
+                allow("reads", "declare_subscriber", "ingress", subscribe),
+                allow("receives", "put", "egress", subscribe),
+            ];
+            let subject = number.to_string();
+            subjects.push(json!({"id": subject, "usernames": [user]}));
+            policies.push(json!({"rules": ids, "subjects": [subject]}));
+        }
+        json!({
+            "enabled": true, "default_permission": "deny",
+            "rules": rules, "subjects": subjects, "policies": policies,
+        })
     }
 }

@@ -78,7 +78,7 @@ fn layout() -> String {
         RegionView { least, most }
         DepartedView { key, sender }
         StopView { size, state, stop, heartbeat, release }
-        TransportTable { size, version, metadata, open, put, subscribe, unsubscribe, close }
+        TransportTable { size, version, metadata, open, judge, put, subscribe, unsubscribe, close }
         TransportEvents { size, state, deliver, link }
         RuleTable { size, state, check }
         FleetList { components, component_count, missing, missing_count }

@@ -35,5 +35,5 @@ pub use language::{
     RaisedFault,
 };
 pub use picture::{PictureRegistration, RunPicture};
-pub use routers::RouterClass;
+pub use routers::{Access, Router, RouterClass, TlsPaths, Topics};
 pub use summary::{Counts, RunSummary};

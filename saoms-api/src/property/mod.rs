@@ -1,6 +1,7 @@
 mod flat;
 mod read;
 mod reserved;
+mod secret;
 mod shape;
 #[cfg(test)]
 mod tests;
@@ -10,6 +11,7 @@ pub(crate) use flat::values_of;
 pub use flat::{all_names, are_distinct, continued, count, list};
 pub use read::{Values, complex, flat, property, read, scalar};
 pub use reserved::{RESERVED, refuse_reserved};
+pub use secret::Secret;
 pub use shape::{PropertyField, PropertyShape, contains, default_fits, equal};
 
 use std::fmt;

@@ -18,7 +18,7 @@ macro_rules! reserved {
 reserved! {
     "period", "delay", "runOnStartup", "mayInterruptIfRunning", "useJMS", "url", "user", "password",
     "topicRename", "overrun", "restart", "restartBackoff", "restartLimit", "deadline", "queue", "loss", "trigger",
-    "minimum", "node",
+    "minimum", "node", "passwordFile", "tlsCa", "tlsCertificate", "tlsKey",
 }
 
 /// Refuses the properties of a periodic class if one has such a name. Runs at compile time.

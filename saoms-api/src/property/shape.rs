@@ -2,9 +2,9 @@ use super::scalar;
 use crate::host::PropertyValue;
 use crate::host::declaration::{Bound, ConstText, PropertyKind, Rule, Scalar};
 
-/// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `SmolStr`, `Duration`, enums
-/// (derive it), other [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec` of
-/// these (any number of values).
+/// The type of a property: `bool`, the integers, `f32` and `f64` (finite), `String`, `SmolStr`, `Secret`, `Duration`,
+/// enums (derive it), other [`Properties`](crate::Properties) structs, `Option` of these (need not be given) and `Vec`
+/// of these (any number of values).
 ///
 /// `#[derive(PropertyField)]` on an enum without data allows the names of its variants in lowerCamelCase, or what
 /// `#[property(name = "...")]` on a variant says.

@@ -7,7 +7,7 @@ const NAMES: &[&str] = &[
     "Adaptation", "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Departed", "Effector",
     "Entries", "Entry", "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "KnownPublisher", "Level",
     "Loop", "LoopClass", "Loops", "Message", "Messages", "Own", "Place", "Properties", "PropertyField", "Publisher",
-    "Record", "Recordable", "Region", "ReportValue", "Saved", "SavedLoops", "SimpleLoop", "StopFunction",
+    "Record", "Recordable", "Region", "ReportValue", "Saved", "SavedLoops", "Secret", "SimpleLoop", "StopFunction",
     "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value", "Work", "builtin_interfaces",
     "event", "extension", "fleet_rules!", "host", "info!", "interface", "plugin!", "record!", "rule", "warn!",
 ];

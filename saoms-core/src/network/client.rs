@@ -1,16 +1,17 @@
 //! The thread of a program's part of a network.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use saoms_api::Level;
-use saoms_api::host::cdr;
+use saoms_api::host::{cdr, shown};
 
 use super::exchange::wire::Vote;
 use super::exchange::{Action, Arrived, Destination, Exchange, News, OwnMessage, Settings};
 use super::port::{Frame, FromRun, Port, Waiting};
+use super::rights::{Granted, Rights};
 use super::transport::TransportSession;
 use super::{FROM_OUTSIDE, key};
 
@@ -18,9 +19,12 @@ use super::{FROM_OUTSIDE, key};
 const ALIVE: u64 = 1;
 const ASK: u64 = 2;
 const COVERED: u64 = 3;
-const AGAIN: u64 = 4;
-const TOPIC: u64 = 5;
+const ACCESS: u64 = 4;
+/// From here on each topic has two: one for its messages, one for those that this program asked for again.
+const FIRST_OF_TOPICS: u64 = 16;
 
+/// Versions of other programs that are told, at most.
+const MOST_VERSIONS: usize = 8;
 /// Longest sleep of the thread.
 const LONGEST_SLEEP: Duration = Duration::from_millis(200);
 /// Time after which messages are offered again for which the fleet had no room.
@@ -28,6 +32,8 @@ const ROOM_AGAIN: Duration = Duration::from_millis(1);
 /// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
 /// they have.
 const MOST_UNDELIVERED: usize = 4_096;
+/// Time from one word of a router about rights to the next.
+const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 /// Time for which a program that ends waits until others have received its events.
 const LINGER: Duration = Duration::from_secs(15);
 
@@ -55,6 +61,25 @@ pub trait Fleet: Send + 'static {
     fn tell(&self, level: Level, text: String);
 }
 
+/// What a program is on a network.
+#[derive(Clone, Debug, Default)]
+pub struct Membership {
+    /// Where the network is.
+    pub url: String,
+    /// The user as which it has joined.
+    pub user: Option<String>,
+    /// Of the router: what it lets users do, if that is not everything.
+    pub grants: Option<Granted>,
+    /// The components that read each topic.
+    pub readers: BTreeMap<String, Vec<String>>,
+}
+
+impl Membership {
+    fn readers(&self, topic: &str) -> Vec<String> {
+        self.readers.get(topic).cloned().unwrap_or_default()
+    }
+}
+
 /// A program's part of a network. Dropping it leaves the network.
 #[derive(Debug)]
 pub struct Client {
@@ -71,13 +96,17 @@ impl Client {
         session: TransportSession,
         port: &Arc<Port>,
         settings: Settings,
+        membership: Membership,
         fleet: impl Fleet,
     ) -> Result<Client, String> {
         let (program, patience) = (settings.program, settings.patience);
-        session.subscribe(&format!("{}/alive/*", key::PREFIX), ALIVE)?;
+        // Those of other versions, too: they are told.
+        session.subscribe(&key::alive_of_all(), ALIVE)?;
         session.subscribe(&key::ask(program), ASK)?;
         session.subscribe(&key::covered(program), COVERED)?;
-        session.subscribe(&format!("{}/again/{program:x}/*", key::PREFIX), AGAIN)?;
+        if membership.user.is_some() {
+            session.subscribe(&key::access(), ACCESS)?;
+        }
         let member = Member {
             session,
             exchange: Exchange::new(settings),
@@ -90,6 +119,11 @@ impl Client {
             patience,
             done_since: None,
             has_told_who_lacks: false,
+            rights: membership.user.clone().map(|user| Rights::new(membership.url.clone(), user)),
+            membership,
+            granted_at: None,
+            next_token: FIRST_OF_TOPICS,
+            others: BTreeSet::new(),
         };
         let own = Arc::clone(port);
         let thread = std::thread::Builder::new().name("saoms-network".to_owned());
@@ -130,6 +164,15 @@ struct Member<F> {
     done_since: Option<u64>,
     /// True if it was told that programs are waited for.
     has_told_who_lacks: bool,
+    membership: Membership,
+    /// What the user of this program may do.
+    rights: Option<Rights>,
+    /// When the router last said what users may do.
+    granted_at: Option<Instant>,
+    /// The token of the next subscription: no two have the same.
+    next_token: u64,
+    /// Versions of other programs that were told.
+    others: BTreeSet<String>,
 }
 
 impl<F: Fleet> Member<F> {
@@ -142,6 +185,7 @@ impl<F: Fleet> Member<F> {
             let now = self.now();
             self.next = self.exchange.tick(now);
             self.carry_out();
+            self.grant();
             self.fleet.deliver(&mut self.undelivered);
             self.agree(now);
             if is_closed {
@@ -175,6 +219,15 @@ impl<F: Fleet> Member<F> {
         self.done_since = is_done.then(|| since.unwrap_or(now));
     }
 
+    /// Tells, as the router, what users may do.
+    fn grant(&mut self) {
+        let Some(grants) = &self.membership.grants else { return };
+        if self.granted_at.is_none_or(|at| at.elapsed() >= ACCESS_AGAIN) {
+            self.granted_at = Some(Instant::now());
+            self.put(&key::access(), &cdr::encode(grants), None);
+        }
+    }
+
     fn now(&self) -> u64 {
         u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
     }
@@ -203,13 +256,14 @@ impl<F: Fleet> Member<F> {
         }
         for link in waiting.links {
             let (level, what) = if link.is_up { (Level::Info, "is there") } else { (Level::Warning, "was lost") };
-            self.fleet.tell(level, format!("the link to the network {what}: {}", link.reason));
+            let reason = if link.reason.is_empty() { String::new() } else { format!(": {}", link.reason) };
+            self.fleet.tell(level, format!("the link to the network {what}{reason}"));
         }
         let now = self.now();
         for frame in waiting.frames {
             // Senders keep what is dropped here, and send it again.
             let is_full = self.undelivered.len() > MOST_UNDELIVERED;
-            if !(is_full && matches!(frame.token, AGAIN | TOPIC)) {
+            if !(is_full && frame.token >= FIRST_OF_TOPICS) {
                 self.take_frame(&frame, now);
             }
         }
@@ -218,12 +272,25 @@ impl<F: Fleet> Member<F> {
     fn take_from_run(&mut self, from_run: FromRun) {
         match from_run {
             FromRun::Reads { topic, is_state, schema } => {
-                if let Err(error) = self.session.subscribe(&key::of_topic(&topic), TOPIC) {
-                    self.fleet.tell(Level::Error, format!("topic `{topic}` cannot be read from the network: {error}"));
+                let again = key::again(self.program, &topic);
+                for keys in [key::of_topic(&topic), again] {
+                    let token = self.next_token;
+                    self.next_token += 1;
+                    if let Err(error) = self.session.subscribe(&keys, token) {
+                        let text = format!("topic `{topic}` cannot be read from the network: {error}");
+                        self.fleet.tell(Level::Error, text);
+                    }
+                }
+                let readers = self.membership.readers(&topic);
+                if let Some(told) = self.rights.as_mut().and_then(|rights| rights.read(&topic, &readers)) {
+                    self.fleet.tell(Level::Error, told);
                 }
                 self.exchange.read(&topic, is_state, schema);
             }
             FromRun::Message { topic, mut component, to, is_state, schema, message } => {
+                if let Some(told) = self.rights.as_mut().and_then(|rights| rights.write(&topic, &component)) {
+                    self.fleet.tell(Level::Error, told);
+                }
                 if &*component == FROM_OUTSIDE {
                     // What comes from outside to two programs comes from two senders.
                     component = format!("{component} {:x}", self.program).into();
@@ -249,6 +316,28 @@ impl<F: Fleet> Member<F> {
         let topic = |place: usize| frame.key.split('/').nth(place).and_then(key::name);
         // What is not what it should be comes from somebody who speaks another language: it is nothing to this program.
         match frame.token {
+            ALIVE if key::version(&frame.key) != Some(key::VERSION) => {
+                let version = key::version(&frame.key).unwrap_or_default().to_owned();
+                if self.others.len() < MOST_VERSIONS && self.others.insert(version.clone()) {
+                    let text = format!(
+                        "a program on the network `{}` speaks version {} of its language, and this one version {}: they do \
+                         not hear each other; build both from one version",
+                        self.membership.url,
+                        shown(version.as_bytes()),
+                        key::VERSION
+                    );
+                    self.fleet.tell(Level::Error, text);
+                }
+            }
+            ACCESS => {
+                let Some((rights, granted)) = self.rights.as_mut().zip(cdr::decode::<Granted>(&frame.message).ok())
+                else {
+                    return;
+                };
+                let membership = &self.membership;
+                let told = rights.hear(&granted, |topic| membership.readers(topic));
+                told.into_iter().for_each(|text| self.fleet.tell(Level::Error, text));
+            }
             ALIVE => {
                 if let Ok(alive) = cdr::decode(&frame.message) {
                     self.exchange.hear(&alive, now);
@@ -264,8 +353,9 @@ impl<F: Fleet> Member<F> {
                     self.exchange.cover(&covered, now);
                 }
             }
-            AGAIN | TOPIC => {
-                if let Some(topic) = topic(if frame.token == AGAIN { 4 } else { 3 }) {
+            FIRST_OF_TOPICS.. => {
+                let is_again = !(frame.token - FIRST_OF_TOPICS).is_multiple_of(2);
+                if let Some(topic) = topic(if is_again { 4 } else { 3 }) {
                     self.exchange.receive(&topic, &frame.message, &frame.attachment, now);
                 }
             }

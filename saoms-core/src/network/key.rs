@@ -7,14 +7,32 @@
 //! | `saoms/1/ask/PROGRAM` | requests to this program to send messages again |
 //! | `saoms/1/again/PROGRAM/TOPIC` | messages that this program asked for |
 //! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
+//! | `saoms/1/access` | what the router lets users do |
 //!
 //! A program is a number in hexadecimal digits. In names, whatever is not an ASCII letter, a digit, `-`, `_` or `.` is
 //! written as `%` and two hexadecimal digits for each byte of its UTF-8 form.
 
 use std::fmt::Write as _;
 
+use saoms_api::extension::{Access, Topics};
+
+use super::transport::UserKeys;
+
 /// What all keys begin with: the version of what is said.
 pub const PREFIX: &str = "saoms/1";
+
+/// The version of what is said.
+pub const VERSION: &str = "1";
+
+/// The version of the program that put something under a key.
+pub fn version(key: &str) -> Option<&str> {
+    key.strip_prefix("saoms/")?.split('/').next()
+}
+
+/// The keys of the signs of life of all programs, those of other versions among them.
+pub fn alive_of_all() -> String {
+    "saoms/*/alive/*".to_owned()
+}
 
 /// A name as a part of a key.
 pub fn part(name: &str) -> String {
@@ -71,6 +89,28 @@ pub fn ask(program: u64) -> String {
 /// The key of messages of a topic that a program asked for.
 pub fn again(program: u64, topic: &str) -> String {
     format!("{PREFIX}/again/{program:x}/{}", part(topic))
+}
+
+/// The key of what the router lets users do.
+pub fn access() -> String {
+    format!("{PREFIX}/access")
+}
+
+/// The keys that a user with this access may use.
+pub fn of_user(access: &Access) -> UserKeys {
+    let names = |topics: &Topics| match topics {
+        Topics::All => vec!["*".to_owned()],
+        Topics::Some(names) => names.iter().map(|name| part(name)).collect(),
+    };
+    // Everybody is there, asks and answers.
+    let common = || [alive_of_all(), format!("{PREFIX}/ask/*"), format!("{PREFIX}/covered/*")];
+    let of = |topics: &Topics| {
+        let of_topic = |name: &String| [format!("{PREFIX}/topic/{name}/*"), format!("{PREFIX}/again/*/{name}")];
+        common().into_iter().chain(names(topics).iter().flat_map(of_topic)).collect::<Vec<String>>()
+    };
+    let mut subscribe = of(&access.reads);
+    subscribe.push(self::access());
+    UserKeys { user: access.user.clone(), put: of(&access.writes), subscribe }
 }
 
 /// The key of answers to a program about states.

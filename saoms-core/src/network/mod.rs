@@ -8,11 +8,12 @@ mod client;
 pub mod exchange;
 pub mod key;
 mod port;
+pub mod rights;
 pub mod transport;
 
 /// The component that messages come from which no component of the fleet sends. A program adds its number.
 pub(crate) const FROM_OUTSIDE: &str = "(outside)";
 
-pub use client::{Client, Fleet, FromNetwork};
+pub use client::{Client, Fleet, FromNetwork, Membership};
 pub(crate) use port::FromRun;
 pub use port::Port;

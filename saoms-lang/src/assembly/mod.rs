@@ -4,6 +4,7 @@
 
 mod fault_subjects;
 mod fleet_view;
+mod network_places;
 mod placement;
 mod run_policy;
 mod task;
@@ -20,6 +21,8 @@ use smol_str::SmolStr;
 pub use fault_subjects::fault_subjects;
 pub(crate) use fleet_view::class_view;
 pub use fleet_view::seen;
+pub use network_places::NetworkPlaces;
+pub(crate) use network_places::OF_NETWORKS;
 pub use run_policy::{AlertCommand, AlertUrl, RunPolicy};
 pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_list::TopicList;
@@ -39,6 +42,8 @@ pub struct Assembly {
     pub node: SmolStr,
     /// What the outermost composites say of the run.
     pub run: RunPolicy,
+    /// Where the settings of networks are written.
+    pub networks: NetworkPlaces,
 }
 
 /// One component, resolved.

@@ -38,6 +38,6 @@ impl Assembly {
             wire.targets = std::mem::take(&mut wire.targets).into_iter().filter_map(here).collect();
         }
         elsewhere.iter_mut().flat_map(|spec| &mut spec.references).for_each(|wire| wire.targets.clear());
-        Assembly { components, elsewhere, node: node.into(), run: self.run }
+        Assembly { components, elsewhere, node: node.into(), run: self.run, networks: self.networks }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use saoms_api::host::{PropertyValue, WriteProperties};
-use saoms_api::{Failure, Properties, PropertyField};
+use saoms_api::{Failure, Properties, PropertyField, Secret};
 use smol_str::SmolStr;
 
 use super::topic_list::TopicList;
@@ -36,10 +36,19 @@ pub struct TaskProperties {
     pub use_jms: bool,
     /// The message broker, `host:port`; without one messages stay inside the process.
     pub url: Option<String>,
-    /// The account at the broker.
+    /// The account at the broker. It holds for all components of the program with this `url`.
     pub user: Option<String>,
-    /// The account's password.
-    pub password: Option<String>,
+    /// The account's password, or `$NAME` for the environment variable `NAME`.
+    pub password: Option<Secret>,
+    /// The path of a file with the account's password, which no other user can read: from the folder of the composite.
+    pub password_file: Option<String>,
+    /// The path of a file (PEM) with the certificates of those who vouch for the broker, for a `url` with `tls://`;
+    /// without one, those that the world trusts.
+    pub tls_ca: Option<String>,
+    /// The path of the program's own certificate (PEM), where the broker asks for one.
+    pub tls_certificate: Option<String>,
+    /// The path of the private key of this certificate (PEM), which no other user can read.
+    pub tls_key: Option<String>,
     /// Topics to rename: `OLD,new::OLD2,new2`.
     pub topic_rename: TopicRenames,
     /// What happens to executions that could not start before the next one was due.

@@ -1,16 +1,23 @@
 //! The assembly of a fleet without errors.
 
+use std::path::Path;
 use std::sync::Arc;
 
+use saoms_api::Secret;
+use saoms_api::extension::RouterClass;
+use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-use crate::assembly::{Assembly, ComponentSpec, Wire, WireTarget};
+use crate::assembly::{Assembly, ComponentSpec, NetworkPlaces, OF_NETWORKS, Wire, WireTarget, Written};
 use crate::check::classes;
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
+use crate::check::fleet::class_index::ClassIndex;
+use crate::check::options::ENVIRONMENT;
+use crate::check::properties::given_values::ValuePlace;
 use crate::check::run_settings;
 use crate::check::wiring::Wiring;
-use crate::source::Sources;
+use crate::source::{Location, Sources};
 
 /// The assembly of a fleet without errors; `None` if something is taken as given.
 pub(crate) fn assemble(
@@ -27,6 +34,9 @@ pub(crate) fn assemble(
     });
     let indices: Vec<usize> = indices.collect();
     let mut components = Vec::with_capacity(count);
+    let first = fleet.contribution.asked_for().first().map(|first| Path::new(sources.get(first.file()).path()));
+    let folder = first.and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
+    let mut networks = NetworkPlaces { folder, ..NetworkPlaces::default() };
     for (place, check) in checks.into_iter().enumerate() {
         let member = &fleet.members[place];
         if !member.runs() {
@@ -36,7 +46,20 @@ pub(crate) fn assemble(
             return None;
         }
         let class = fleet.class_of(place)?;
-        let (values, written, _) = check.given.into_own();
+        let mut task = check.task;
+        if let Some(task) = &mut task
+            && let Some(place) = check.given.get("password").map(|given| given.place)
+        {
+            task.password = task.password.take().map(|secret| from_variable(secret, place, sources));
+        }
+        let is_on_network = task.as_ref().is_some_and(|task| task.url.is_some());
+        if is_on_network || RouterClass::linked().any(|router| router.class == class.class.declaration().name) {
+            let given = OF_NETWORKS.iter().filter_map(|name| Some((*name, check.given.get(name)?.place)));
+            let places = given.chain([("", member.component.name.location)]).collect();
+            networks.places.insert(member.path().to_owned(), places);
+        }
+        let (values, written, places) = check.given.into_own();
+        let written = without_secrets(class, &values, written, &places, sources);
         let references = class.references.iter().zip(&wiring[place]);
         let references = references.map(|(declared, targets)| Wire {
             reference: declared.name.clone(),
@@ -59,7 +82,7 @@ pub(crate) fn assemble(
             library: classes::library(member.component, fleet.contribution, sources),
             values,
             written,
-            task: check.task,
+            task,
             references: references.collect(),
             loops: check.loops?.specs,
         });
@@ -69,5 +92,36 @@ pub(crate) fn assemble(
         elsewhere: Vec::new(),
         node: SmolStr::default(),
         run: run_settings::policy(fleet, sources),
+        networks,
     })
+}
+
+/// A secret with the environment variable that it came from, where it did.
+fn from_variable(secret: Secret, place: Location, sources: &Sources) -> Secret {
+    let file = sources.get(place.file);
+    match file.text().split_once('=').filter(|_| file.path() == ENVIRONMENT) {
+        Some((name, _)) => secret.from_variable(name),
+        None => secret,
+    }
+}
+
+/// What the composite writes for properties of a class, with what stands for secrets in place of these.
+fn without_secrets(
+    class: &ClassIndex<'_>,
+    values: &[(SmolStr, PropertyValue)],
+    written: Written,
+    places: &[ValuePlace],
+    sources: &Sources,
+) -> Written {
+    let declared = &class.class.declaration().properties;
+    let is_secret = |name: &str| declared.iter().any(|property| property.secret && property.name == name);
+    if !values.iter().any(|(name, _)| is_secret(name)) {
+        return written;
+    }
+    let mut shown = written.unwrap_or_else(|| values.into());
+    for ((name, value), at) in shown.iter_mut().zip(places) {
+        let (true, Some(text), Some(place)) = (is_secret(name), value.as_text(), at.places.first()) else { continue };
+        *value = from_variable(Secret::new(text.clone()), *place, sources).shown().as_str().into();
+    }
+    Some(shown)
 }

@@ -18,7 +18,7 @@ use crate::check::unfolding::append_list::AppendList;
 use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
 use crate::registry::{ClassTopic, Registry};
-use crate::source::{FileId, Sources};
+use crate::source::{FileId, Location, Sources};
 use crate::syntax::ElementId;
 
 /// The number of times each replicated or conditional part of the composites is in a fleet, and which topics its
@@ -29,6 +29,8 @@ pub struct Occurrences {
     /// The fewest and the most in one of the composites around them.
     ranges: HashMap<ElementPath, (usize, usize)>,
     topics: HashMap<ElementPath, Vec<TopicUse>>,
+    /// Where secrets are written.
+    secrets: HashSet<Location>,
 }
 
 /// A component, with those around it that composites implement before it, the outermost first.
@@ -93,7 +95,7 @@ impl Occurrences {
             }
         }
         counts.extend(fleet.conditional.iter().map(|(place, is_there)| (*place, usize::from(*is_there))));
-        Self { counts, ranges, topics }
+        Self { counts, ranges, topics, secrets: sources.secrets().collect() }
     }
 
     /// The fewest and the most of a component in one of the composites that implement `around`, the outermost first;
@@ -101,6 +103,11 @@ impl Occurrences {
     pub fn range(&self, around: &[Origin], origin: Origin) -> Option<(usize, usize)> {
         self.counts.get(&place(origin))?;
         Some(self.ranges.get(&path_of(around, origin)).copied().unwrap_or_default())
+    }
+
+    /// True if what is written at a place is a secret, which no picture shows.
+    pub fn is_secret(&self, at: Location) -> bool {
+        self.secrets.contains(&at)
     }
 
     /// True if a part is there at all.

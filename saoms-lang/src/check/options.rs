@@ -7,6 +7,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
 use crate::model::Contribution;
 use crate::source::{Sources, Span, Text};
 
+/// The name of the source texts of environment variables, each `NAME=VALUE`.
+pub(crate) const ENVIRONMENT: &str = "environment";
+
 /// Options of a check.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -124,7 +127,7 @@ impl Variable {
                 diagnostics.push(one.help("the value of a property is a text in UTF-8"));
                 continue;
             };
-            let file = sources.add("environment", format!("{named}={value}"));
+            let file = sources.add(ENVIRONMENT, format!("{named}={value}"));
             let shown = sources.get(file).text();
             let value = Text::part_of(file, shown, &shown[named.len() + 1..]);
             all.push(Self { name: named.to_string(), value });

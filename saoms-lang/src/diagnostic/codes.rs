@@ -162,7 +162,6 @@ codes! {
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has a kind of implementation that this program cannot run.";
-    NOT_SUPPORTED_YET = "S3003" Warning "not-supported-yet" [OutlivesExpansion]: "A part of SCA or SAOMS that this version does not support yet.";
     UNKNOWN_PROPERTY = "S3004" Error "unknown-property" ("ASM50037") [AbsentPart]: "A component is given a property that its class, composite or component type does not have.";
     PROPERTY_REPEATED = "S3005" Error "property-repeated" ("ASM50031"): "A property is given twice.";
     PROPERTY_MISSING = "S3006" Error "property-missing" ("ASM40011") [AbsentPart]: "A required property has no value.";
@@ -197,6 +196,16 @@ codes! {
     EVENT_MISMATCH = "S4017" Error "event-mismatch": "Two classes take an event of one name with different fields, or the name of an event is a reserved word of the language of a property.";
     EVENT_UNTAKEN = "S4018" Warning "event-untaken" [OutlivesExpansion, WithoutEffect, AbsentComponent]: "The text of a property has an event that no component takes.";
     TOPIC_BETWEEN_NODES = "S4019" Error "topic-between-nodes" [Judgement, OutlivesExpansion]: "Components of different nodes use a topic, but one of them has no `url`, or they have different ones.";
+    CREDENTIALS_IN_CLEAR = "S4020" Error "credentials-in-clear": "A user and a password are used beyond this machine without TLS.";
+    OPEN_BROKER = "S4021" Error "open-broker": "A message broker that other machines reach asks for no password, or does not encrypt.";
+    BROKERS_COLLIDE = "S4022" Error "brokers-collide": "Two message brokers of a fleet listen at one port.";
+    NO_BROKER = "S4023" Warning "no-broker" [OutlivesExpansion, AbsentComponent]: "A `url` names a message broker that the fleet does not have, although it has another one.";
+    NETWORK_SETTINGS_DIFFER = "S4024" Error "network-settings-differ": "Two components give different accounts or certificates for one `url`; a program has one connection to it.";
+    TLS_SETTINGS = "S4025" Error "tls-settings": "The files for TLS are incomplete, or not used.";
+    TOPIC_ON_NETWORKS = "S4026" Warning "topic-on-networks" [OutlivesExpansion]: "Components of two networks use one topic: they do not hear each other's programs.";
+    ACCESS = "S4027" Error "access": "The access of users to topics cannot be enforced as it is written.";
+    NETWORK_FILE = "S4028" Error "network-file": "A file or an environment variable that a network needs is missing or wrong. Reported by `saoms run`.";
+    UNPROTECTED_NETWORK = "S4029" Warning "unprotected-network" [OutlivesExpansion]: "Messages leave this machine without protection: everybody in the network can read and change them.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

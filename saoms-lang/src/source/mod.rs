@@ -10,8 +10,9 @@ mod open;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 pub use lines::{ColumnUnit, LineColumn, LineIndex, LineRange};
 pub use located::{Located, Text};
@@ -83,6 +84,8 @@ pub struct SourceFile {
     // A text as it was read: it may be as large as the rest of the program, and is never copied.
     text: Arc<String>,
     lines: Arc<OnceLock<LineIndex>>,
+    /// The parts that nobody shows.
+    secrets: Mutex<Vec<Span>>,
 }
 
 impl SourceFile {
@@ -94,6 +97,21 @@ impl SourceFile {
     /// The whole text, a byte order mark included.
     pub fn text(&self) -> &Arc<String> {
         &self.text
+    }
+
+    /// A part of the text for people: secrets are stars.
+    pub fn shown(&self, part: Span) -> Cow<'_, str> {
+        let text = self.text.get(part.start as usize..part.end as usize).unwrap_or_default();
+        let secrets = self.secrets.lock().unwrap_or_else(PoisonError::into_inner);
+        let meets = |secret: &Span| secret.start < part.end && part.start < secret.end;
+        if !secrets.iter().any(meets) {
+            return text.into();
+        }
+        let shown = text.char_indices().map(|(at, character)| {
+            let at = part.start + at as u32;
+            if secrets.iter().any(|secret| secret.start <= at && at < secret.end) { '*' } else { character }
+        });
+        shown.collect()
     }
 
     /// The line and column of byte `at`; a place past the end counts as the end.
@@ -166,7 +184,7 @@ impl Sources {
             Some(earlier) => (Arc::clone(&earlier.text), Arc::clone(&earlier.lines)),
             None => (Arc::new(text), Arc::default()),
         };
-        self.files.push(SourceFile { path, text, lines });
+        self.files.push(SourceFile { path, text, lines, secrets: Mutex::default() });
         id
     }
 
@@ -181,6 +199,22 @@ impl Sources {
     /// The text at a place; empty when the place is not in the text.
     pub fn snippet(&self, at: Location) -> &str {
         self.get(at.file).text.get(at.span.start as usize..at.span.end as usize).unwrap_or_default()
+    }
+
+    /// Notes that what is at a place is a secret, which nobody shows.
+    pub fn hide(&self, at: Location) {
+        let mut secrets = self.get(at.file).secrets.lock().unwrap_or_else(PoisonError::into_inner);
+        if !secrets.contains(&at.span) {
+            secrets.push(at.span);
+        }
+    }
+
+    /// The places of secrets.
+    pub fn secrets(&self) -> impl Iterator<Item = Location> {
+        self.iter().flat_map(|(id, file)| {
+            let secrets = file.secrets.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            secrets.into_iter().map(move |span| span.in_file(id))
+        })
     }
 
     /// All files in the order in which they were added.

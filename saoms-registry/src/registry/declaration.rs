@@ -124,6 +124,9 @@ pub struct PropertyDeclaration {
     /// True if it can be changed while the component runs.
     #[serde(default)]
     pub live: bool,
+    /// True if its value is a secret, which nothing prints.
+    #[serde(default)]
+    pub secret: bool,
     /// True if it takes any number of values.
     #[serde(default)]
     pub many: bool,

@@ -100,9 +100,9 @@ fn window<'a>(file: &SourceFile, group: Vec<Placed<'a>>) -> Window<'a> {
     Window { text, first_line, moved, marks }
 }
 
-/// A part of a line, with what would steer a terminal escaped.
+/// A part of a line, with what would steer a terminal escaped, and without secrets.
 fn visible(file: &SourceFile, part: Span) -> String {
-    Visible(&file.text()[part.start as usize..part.end as usize]).to_string()
+    Visible(&*file.shown(part)).to_string()
 }
 
 /// The character boundary next to a place that may be within a character, or behind the text.

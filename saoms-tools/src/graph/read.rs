@@ -11,6 +11,7 @@ use saoms_lang::model::{
     ServiceElement, WireElement,
 };
 use saoms_lang::registry::{RegisteredClass, Registry};
+use saoms_lang::source::Text;
 
 /// Composites that are drawn inside each other, and components that are drawn in all of them: a few lines of text can
 /// name a composite of composites of composites.
@@ -135,7 +136,11 @@ impl Reader<'_> {
         let mut diagram = Diagram {
             name,
             namespace,
-            properties: view.composites().flat_map(|one| &one.properties).map(setting).collect(),
+            properties: view
+                .composites()
+                .flat_map(|one| &one.properties)
+                .map(|one| setting(one, self.census))
+                .collect(),
             services: view.services().map(|one| port(&one.name, one.contract().interface.as_ref())).collect(),
             references: view.references().map(reference).collect(),
             components: view.components().map(|(_, one)| self.component(one)).collect(),
@@ -150,7 +155,7 @@ impl Reader<'_> {
     }
 
     fn component(&mut self, one: &model::ComponentElement) -> DiagramComponent {
-        let mut component = component(one, self.registry);
+        let mut component = component(one, self.registry, self.census);
         if one.replicas.as_ref().is_some() {
             component.replicas = self.census.range(&self.around, one.origin);
         }
@@ -192,7 +197,7 @@ pub(super) fn class_of<'r>(component: &model::ComponentElement, registry: &'r Re
     registry.get(component.class()?).map(AsRef::as_ref)
 }
 
-fn component(component: &model::ComponentElement, registry: &Registry) -> DiagramComponent {
+fn component(component: &model::ComponentElement, registry: &Registry, census: &Occurrences) -> DiagramComponent {
     let class = class_of(component, registry);
     let mut services: Vec<Port> =
         component.services.iter().map(|one| port(&one.name, one.contract().interface.as_ref())).collect();
@@ -220,7 +225,7 @@ fn component(component: &model::ComponentElement, registry: &Registry) -> Diagra
         replicas: None,
         class: label(component),
         state: if is_unknown { State::NotFound } else { State::Known },
-        properties: component.properties.iter().map(setting).collect(),
+        properties: component.properties.iter().map(|one| setting(one, census)).collect(),
         services,
         references,
         inside: None,
@@ -271,7 +276,8 @@ fn reference(one: &ReferenceElement) -> Port {
     Port { many, ..port(&one.name, one.contract().interface.as_ref()) }
 }
 
-fn setting(property: &model::Property) -> DiagramSetting {
+fn setting(property: &model::Property, census: &Occurrences) -> DiagramSetting {
     let simple = property.simple_value().or_else(|| property.source()).or_else(|| property.file());
-    DiagramSetting { name: property.name.to_string(), value: simple.map(ToString::to_string) }
+    let shown = |text: &Text| if census.is_secret(text.location) { "***".to_owned() } else { text.to_string() };
+    DiagramSetting { name: property.name.to_string(), value: simple.map(shown) }
 }

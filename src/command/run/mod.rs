@@ -50,7 +50,7 @@ use events::{Events, Numbers, Unreadable};
 use faults::{FaultScript, Known, report_wrong};
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
-use networks::Networks;
+use networks::{Networks, Refused};
 use notify::Notifier;
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
@@ -88,6 +88,11 @@ pub(crate) struct RunArguments {
     /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
     #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) limit: Option<Duration>,
+
+    /// Wait no longer than this for a message broker that is not there, and end with an error then; `0s` is not at all.
+    /// Without it, components wait for their broker for ever
+    #[arg(long, value_name = "DURATION", conflicts_with = "virtual_time", allow_hyphen_values = true, value_parser = duration)]
+    pub(crate) connect_timeout: Option<Duration>,
 
     /// Run in virtual time: deterministic, and as fast as the machine allows
     #[arg(long = "virtual", conflicts_with_all = ["realtime", "timer_slack", "budget"])]
@@ -225,7 +230,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         );
         return Exit::WrongInput;
     }
-    let Some((assembly, read)) = assembly(arguments, files) else { return Exit::WrongInput };
+    let Some((assembly, networks, read)) = assembly(arguments, files) else { return Exit::WrongInput };
     if let Err(exit) = Outputs::beside(arguments.events.clone()).with_streams() {
         return exit;
     }
@@ -254,10 +259,6 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
             }
         }
     }
-    let networks = match Networks::of(arguments, &assembly) {
-        Ok(networks) => networks,
-        Err(exit) => return exit,
-    };
     let store = match state::open(arguments) {
         Ok(store) => store,
         Err(exit) => return exit,
@@ -399,15 +400,24 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 /// may look at a page of the output.
 const PAGER_PATIENCE: Duration = Duration::from_secs(60);
 
-/// The fleet to run, and the files that were read; `None` after its errors have been shown. Texts and diagnostics are
-/// dropped here: a run may last for days.
-fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Vec<PathBuf>)> {
+/// The fleet to run with its networks, and the files that were read; `None` after its errors have been shown. Texts and
+/// diagnostics are dropped here: a run may last for days.
+fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Networks, Vec<PathBuf>)> {
     let languages = EventLanguage::linked().filter(|_| arguments.events.is_some());
     let settled: Vec<String> = languages.flat_map(|one| one.settles).map(|code| format!("{code}=allow")).collect();
     let compilation = compiled(files, |project, classes| {
         project.severities(settled).node(arguments.node.clone()).to_start().compile(classes)
     });
-    let compilation = compilation.ok()?;
+    let mut compilation = compilation.ok()?;
+    let mut networks = None;
+    if let Some(whole) = compilation.output.take() {
+        let assembly = arguments.node.iter().fold(whole, |whole, node| whole.at(node));
+        let assembly = compilation.output.insert(assembly);
+        match Networks::of(arguments, assembly, &mut compilation.diagnostics) {
+            Ok(found) => networks = Some(found),
+            Err(Refused) => compilation.output = None,
+        }
+    }
     let shown = DiagnosticReport::from(&compilation);
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &compilation.output) {
@@ -417,8 +427,10 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
             eprint_coloured(&shown.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }
     }
-    if compilation.output.is_none() && arguments.format == Format::Human {
-        eprint(&format!("\n{}: nothing was started\n", counted(shown.count(Severity::Error), "error")));
+    // Without errors here, what is missing was reported.
+    let errors = shown.count(Severity::Error);
+    if compilation.output.is_none() && arguments.format == Format::Human && errors > 0 {
+        eprint(&format!("\n{}: nothing was started\n", counted(errors, "error")));
     }
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.iter().chain(&arguments.faults).cloned());
@@ -426,8 +438,7 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
     if !has_components(&assembly, "run") {
         return None;
     }
-    let assembly = arguments.node.iter().fold(assembly, |whole, node| whole.at(node));
-    Some((assembly, read))
+    Some((assembly, networks?, read))
 }
 
 fn seed(text: &str) -> Result<u64, String> {

@@ -1,5 +1,8 @@
 //! The networks of a run: where the composites have a `url` or a message broker.
 
+mod private;
+mod settings;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
@@ -7,18 +10,21 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use saoms_api::Level;
-use saoms_api::extension::RouterClass;
 use saoms_api::host::format_duration;
 use saoms_core::network::exchange::Settings;
+use saoms_core::network::rights::Granted;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession};
-use saoms_core::network::{Client, Port};
+use saoms_core::network::{Client, Membership, Port};
 use saoms_core::schedule::{Handle, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
+use saoms_lang::diagnostic::Diagnostic;
 
 use super::{RunArguments, title};
-use crate::Exit;
 use crate::output::eprint;
+use settings::Resolver;
 
+/// Reasons for which a network is waited for that are told, at most.
+const MOST_REASONS: usize = 8;
 /// Pause before a network is tried again that is not there yet.
 const PAUSE: Duration = Duration::from_millis(200);
 /// Time without a sign of life after which a program is missed: three of its longest periods, between these.
@@ -34,6 +40,8 @@ pub(super) struct Networks {
     name: String,
     /// Time without a sign of life after which others miss this program.
     patience: Duration,
+    /// The time of `--for`.
+    limit: Option<Duration>,
     /// Time for which a network is waited for that is not there yet; `None` is for ever.
     wait: Option<Duration>,
     /// What has to be said once the run has a log.
@@ -45,22 +53,35 @@ struct Network {
     transport: Transport,
     /// The components on it.
     components: BTreeSet<String>,
+    /// The one that is its router here.
+    router: Option<String>,
     /// The other nodes of the fleet that are on it.
     others: BTreeSet<String>,
     settings: SessionSettings,
+    membership: Membership,
 }
 
+/// The reason for which there are no networks, which was reported or is in the list of diagnostics.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Refused;
+
 impl Networks {
-    /// The networks of an assembly, each with its transport.
+    /// The networks of an assembly, each with its transport. What is wrong with their settings is added to
+    /// `diagnostics`.
     ///
     /// # Errors
-    /// There is no transport for a url: it was reported.
-    pub(super) fn of(arguments: &RunArguments, assembly: &Assembly) -> Result<Networks, Exit> {
+    /// There is no transport for a url, which was reported, or the settings of a network are wrong.
+    pub(super) fn of(
+        arguments: &RunArguments,
+        assembly: &Assembly,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Result<Networks, Refused> {
         let mut networks = Networks {
             all: Vec::new(),
             name: arguments.node.clone().unwrap_or_else(|| title(arguments)),
             patience: LEAST_PATIENCE,
-            wait: arguments.limit,
+            limit: arguments.limit,
+            wait: arguments.connect_timeout,
             notes: Vec::new(),
         };
         if arguments.virtual_time {
@@ -69,24 +90,27 @@ impl Networks {
         let periods = assembly.components.iter().filter_map(|spec| spec.task.as_ref()).map(|task| task.period);
         networks.patience =
             periods.max().map_or(LEAST_PATIENCE, |period| (3 * period).clamp(LEAST_PATIENCE, LONGEST_PATIENCE));
-        let routers = routers(assembly);
-        let mut urls: BTreeMap<&str, (Option<&str>, Option<&str>)> =
-            routers.iter().map(|url| (url.as_str(), (None, None))).collect();
-        for task in assembly.components.iter().filter_map(|spec| spec.task.as_ref()) {
-            if let Some(url) = &task.url {
-                let known = urls.entry(url).or_default();
-                *known = (known.0.or(task.user.as_deref()), known.1.or(task.password.as_deref()));
-            }
-        }
         let mut is_missing = false;
-        for (url, (user, password)) in urls {
-            let listen = routers.iter().any(|router| router == url);
-            match Transport::find(url, &arguments.fleet.plugins.plugins) {
+        let mut resolver = Resolver { assembly, faults: Vec::new() };
+        for (url, described) in settings::described(assembly) {
+            let listen = described.router.is_some();
+            match Transport::find(&url, &arguments.fleet.plugins.plugins) {
                 Ok(transport) => {
-                    let (user, password) = (user.map(str::to_owned), password.map(str::to_owned));
-                    let settings = SessionSettings { url: url.to_owned(), listen, user, password, tls: None };
-                    let components = components(assembly, url);
-                    networks.all.push(Network { transport, components, others: others(assembly, url), settings });
+                    let settings = resolver.settings(&url, &described);
+                    if resolver.faults.is_empty() {
+                        resolver.judge(transport, &settings, &described);
+                    }
+                    let granted = settings::granted(&described, &settings.users);
+                    let membership = Membership {
+                        url: url.clone(),
+                        user: settings.account.as_ref().map(|account| account.user.clone()),
+                        grants: (!granted.is_empty()).then(|| Granted::of(&granted)),
+                        readers: readers(assembly, &url),
+                    };
+                    let (components, others) = (components(assembly, &url), others(assembly, &url));
+                    let router = described.router.as_ref();
+                    let router = router.map(|(index, _)| assembly.components[*index].path.clone());
+                    networks.all.push(Network { transport, components, router, others, settings, membership });
                 }
                 Err(error @ TransportError::Missing { .. }) if listen => networks.notes.push(format!(
                     "the topics of `{url}` are served inside this program, and no other program can join them: {error}"
@@ -97,11 +121,12 @@ impl Networks {
                 }
             }
         }
-        if is_missing {
+        let is_wrong = !resolver.faults.is_empty();
+        diagnostics.extend(resolver.faults);
+        if is_missing && !is_wrong {
             eprint("\nnothing was started\n");
-            return Err(Exit::WrongInput);
         }
-        Ok(networks)
+        if is_missing || is_wrong { Err(Refused) } else { Ok(networks) }
     }
 
     /// Joins the networks, in the code that gets the control before components initialize. Waits for networks that are
@@ -111,21 +136,22 @@ impl Networks {
             handle.note(Level::Warning, note);
         }
         let mut clients = Vec::new();
-        for Network { transport, components, others, settings } in self.all {
+        for Network { transport, components, router, others, settings, membership } in self.all {
             let port: Arc<Port> = Arc::default();
-            let wait = Wait { longest: self.wait, is_over: &is_over };
-            let Some(session) = opened(transport, &settings, &port, handle, &wait)? else { break };
+            let wait = Wait { longest: self.wait, limit: self.limit, is_over: &is_over };
+            let who = Who { components: &components, router: router.as_deref(), settings: &settings };
+            let Some(session) = who.opened(transport, &port, handle, &wait)? else { break };
             let fleet = handle.use_network(&settings.url, &port);
             let member = Settings {
                 program: RandomState::new().hash_one(std::process::id()),
                 name: self.name.clone(),
                 patience: u64::try_from(self.patience.as_nanos()).unwrap_or(u64::MAX),
                 limit: LIMIT,
-                components,
+                components: components.clone(),
                 others,
             };
-            let client = Client::start(session, &port, member, fleet);
-            clients.push(client.map_err(|error| StartError::Network { url: settings.url.clone(), error })?);
+            let client = Client::start(session, &port, member, membership, fleet);
+            clients.push(client.map_err(|error| who.error(&error))?);
         }
         Ok(clients)
     }
@@ -133,44 +159,84 @@ impl Networks {
 
 /// How long a network is waited for that is not there yet.
 struct Wait<'a> {
-    /// `None` is for ever.
+    /// The time of `--connect-timeout`; `None` is for ever.
     longest: Option<Duration>,
+    /// The time of `--for`.
+    limit: Option<Duration>,
     /// True once the end was asked for.
     is_over: &'a dyn Fn() -> bool,
 }
 
-/// A session of a network; `None` if the end was asked for before it was there.
-fn opened(
-    transport: Transport,
-    settings: &SessionSettings,
-    port: &Arc<Port>,
-    handle: &Handle,
-    wait: &Wait<'_>,
-) -> Result<Option<TransportSession>, StartError> {
-    let url = &settings.url;
-    let since = Instant::now();
-    let mut has_waited = false;
-    loop {
-        match TransportSession::open(transport, settings, Arc::clone(port) as Arc<_>) {
-            Ok(Opened::Session(session)) => {
-                let what = if settings.listen { "listens at" } else { "has joined the network at" };
-                handle.note(Level::Info, format!("the program {what} `{url}`"));
-                return Ok(Some(session));
-            }
-            Ok(Opened::Unreachable(why)) => {
-                if !std::mem::replace(&mut has_waited, true) {
-                    handle.note(Level::Warning, format!("waits for the message broker at `{url}`: {why}"));
+/// Who joins a network.
+struct Who<'a> {
+    components: &'a BTreeSet<String>,
+    /// The one that is the router here.
+    router: Option<&'a str>,
+    settings: &'a SessionSettings,
+}
+
+impl Who<'_> {
+    /// The components, for people.
+    fn shown(&self) -> String {
+        let all = self.components.iter().map(String::as_str);
+        let mut all = self.router.into_iter().chain(all.filter(|_| self.router.is_none()));
+        let first = all.next().unwrap_or_default();
+        match all.count() {
+            0 => format!("component `{first}`"),
+            1 => format!("component `{first}` and another one"),
+            more => format!("component `{first}` and {more} more"),
+        }
+    }
+
+    fn error(&self, why: &str) -> StartError {
+        let verb = if self.settings.listen { "serves" } else { "needs" };
+        let error = format!("{why} ({} {verb} it)", self.shown());
+        StartError::Network { url: self.settings.url.clone(), error }
+    }
+
+    /// A session of the network; `None` if the end was asked for before it was there.
+    fn opened(
+        &self,
+        transport: Transport,
+        port: &Arc<Port>,
+        handle: &Handle,
+        wait: &Wait<'_>,
+    ) -> Result<Option<TransportSession>, StartError> {
+        let url = &self.settings.url;
+        let since = Instant::now();
+        let mut told: Vec<String> = Vec::new();
+        loop {
+            let why = match TransportSession::open(transport, self.settings, Arc::clone(port) as Arc<_>) {
+                Ok(Opened::Session(session)) => {
+                    let what = if self.settings.listen { "listens at" } else { "has joined the network at" };
+                    handle.note(Level::Info, format!("the program {what} `{url}`"));
+                    return Ok(Some(session));
                 }
+                Ok(Opened::Unreachable(why)) => why,
+                Err(error) => return Err(self.error(&error)),
+            };
+            let over = |longest: Option<Duration>| longest.filter(|longest| since.elapsed() >= *longest);
+            if let Some(longest) = over(wait.longest) {
+                let within = match longest {
+                    Duration::ZERO => String::new(),
+                    longest => format!(" within the {} of `--connect-timeout`", format_duration(longest)),
+                };
+                return Err(self.error(&format!("no message broker was there{within}: {why}")));
             }
-            Err(error) => return Err(StartError::Network { url: url.clone(), error }),
-        }
-        if (wait.is_over)() {
-            return Ok(None);
-        }
-        sleep(PAUSE);
-        if let Some(longest) = wait.longest.filter(|longest| since.elapsed() >= *longest) {
-            let error = format!("no message broker was there within the {} of `--for`", format_duration(longest));
-            return Err(StartError::Network { url: url.clone(), error });
+            if !told.contains(&why) && told.len() < MOST_REASONS {
+                let needs =
+                    format!("{} {}", self.shown(), if self.components.len() == 1 { "needs it" } else { "need it" });
+                handle.note(Level::Warning, format!("waits for the message broker at `{url}`: {why}; {needs}"));
+                told.push(why);
+            }
+            if (wait.is_over)() {
+                return Ok(None);
+            }
+            sleep(PAUSE);
+            if let Some(limit) = over(wait.limit) {
+                let error = format!("no message broker was there within the {} of `--for`", format_duration(limit));
+                return Err(self.error(&error));
+            }
         }
     }
 }
@@ -189,13 +255,18 @@ fn on<'s>(specs: &'s [ComponentSpec], url: &str) -> impl Iterator<Item = &'s Com
     specs.iter().filter(move |spec| spec.task.as_ref().is_some_and(|task| task.url.as_deref() == Some(url)))
 }
 
-/// The addresses of the routers of an assembly.
-fn routers(assembly: &Assembly) -> Vec<String> {
-    let of = |name: &str| RouterClass::linked().find(|router| router.class == name);
-    let known = assembly.components.iter().filter_map(|spec| {
-        let router = of(&spec.class.declaration().name)?;
-        // The checker has made one of these values.
-        (router.address)(&spec.values).ok()
-    });
-    known.collect()
+/// The components of a network that read each topic.
+fn readers(assembly: &Assembly, url: &str) -> BTreeMap<String, Vec<String>> {
+    let mut readers: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let is_on = |spec: &&ComponentSpec| spec.task.as_ref().is_some_and(|task| task.url.as_deref() == Some(url));
+    for spec in assembly.components.iter().filter(is_on) {
+        let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
+        for topic in spec.class.declaration().subscribes.iter().chain(of_loops) {
+            let known = readers.entry(spec.topic(&topic.name).into_owned()).or_default();
+            if known.last() != Some(&spec.path) {
+                known.push(spec.path.clone());
+            }
+        }
+    }
+    readers
 }

@@ -119,6 +119,13 @@ fn in_a_composite_with_policies() {
     hold(&files, mistakes, &expect_file!["../../mistakes/guarded/mistakes.txt"]);
 }
 
+#[test]
+fn in_a_fleet_on_networks() {
+    let files = files!("networks": "networks.composite");
+    let mistakes = include_str!("../../mistakes/networks/mistakes.txt");
+    hold(&files, mistakes, &expect_file!["../../mistakes/networks/mistakes.txt"]);
+}
+
 macro_rules! shipped {
     ($folder:literal: $($name:literal)*) => {
         vec![$(($name, include_str!(concat!("../../../composites/", $folder, $name)).to_owned())),*]

@@ -1,11 +1,17 @@
 //! Fleets in several programs: real processes over loopback, and what happens to processes and lines.
 
+mod access;
 mod broken;
+mod certificates;
+mod errors;
 mod foreign;
 mod lines;
 mod nodes;
+mod passwords;
 mod programs;
 mod proxy;
+mod secrets;
+mod tls;
 mod together;
 
 use std::sync::Arc;

@@ -3,7 +3,8 @@
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::net::TcpListener;
-use std::process::{Child, Output, Stdio};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
@@ -16,6 +17,15 @@ use crate::support::{command, saoms_in};
 
 /// Time for which something is waited for that has to happen.
 const LONGEST: Duration = Duration::from_secs(180);
+
+/// Components of tasks on the network at a url, with these properties beside their own.
+pub(super) fn on_network(url: &str, more: Given<'_>, tasks: &[Task<'_>]) -> String {
+    let components = tasks.iter().map(|(name, class, properties)| {
+        let usual = [("ID", *name), ("period", "100"), ("url", url)];
+        component(name, class, &[&usual, more, *properties].concat())
+    });
+    components.collect()
+}
 
 /// Properties of a component.
 pub(super) type Given<'a> = &'a [(&'a str, &'a str)];
@@ -69,6 +79,11 @@ impl Programs {
         Programs { folder: tempfile::tempdir().unwrap(), transport, port: free_port(), started: Mutex::default() }
     }
 
+    /// The folder of the composites.
+    pub(super) fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
     /// The address of the network at this port.
     pub(super) fn url(&self, port: u16) -> String {
         match self.transport {
@@ -86,22 +101,28 @@ impl Programs {
 
     /// Starts a program with these components, on the network at this port.
     pub(super) fn tasks(&self, name: &str, port: u16, tasks: &[Task<'_>]) -> Arc<Program> {
-        let url = self.url(port);
-        let components = tasks.iter().map(|(name, class, properties)| {
-            let usual = [("ID", *name), ("period", "100"), ("url", &url)];
-            component(name, class, &[&usual, *properties].concat())
-        });
-        self.start(name, &components.collect::<String>())
+        self.start(name, &on_network(&self.url(port), &[], tasks))
     }
 
-    fn start(&self, name: &str, components: &str) -> Arc<Program> {
+    /// Starts a program with these components.
+    pub(super) fn start(&self, name: &str, components: &str) -> Arc<Program> {
+        self.start_with(name, components, |_| {})
+    }
+
+    /// The same, with more for its command.
+    pub(super) fn start_with(
+        &self,
+        name: &str,
+        components: &str,
+        configure: impl FnOnce(&mut Command),
+    ) -> Arc<Program> {
         let composite = format!(
             "<composite xmlns=\"http://www.osoa.org/xmlns/sca/1.0\" targetNamespace=\"http://launch\" \
              name=\"{name}\">\n{components}</composite>\n"
         );
         let file = format!("{name}.composite");
         self.write(&file, &composite);
-        self.run(name, &["run", &file])
+        self.run_with(name, &["run", &file], configure)
     }
 
     /// Writes a file that programs can name.
@@ -121,12 +142,17 @@ impl Programs {
 
     /// Starts a program with these arguments.
     pub(super) fn run(&self, name: &str, arguments: &[&str]) -> Arc<Program> {
+        self.run_with(name, arguments, |_| {})
+    }
+
+    fn run_with(&self, name: &str, arguments: &[&str], configure: impl FnOnce(&mut Command)) -> Arc<Program> {
         let mut run = command(&[arguments, &["--grace", "10s"]].concat());
         run.current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
         let transport = library(if self.transport == Transport::Relay { "saoms_relay" } else { "saoms_zenoh" });
         for library in [transport, build::library("numbers")] {
             run.arg("--plugin").arg(library);
         }
+        configure(&mut run);
         let mut child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let printed = Arc::<Mutex<String>>::default();
         let (out, err) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
@@ -155,6 +181,7 @@ impl Programs {
     pub(super) fn ends(&self, program: &Program, code: i32) {
         self.wait(&format!("`{}` does not end", program.name), || program.has_ended());
         let status = program.child.lock().unwrap().wait().unwrap();
+        self.wait("what it said last is read", || Arc::strong_count(&program.printed) == 1);
         assert_eq!(status.code(), Some(code), "`{}` ends: {status}\n{}", program.name, self.printed());
     }
 
@@ -214,6 +241,11 @@ impl Program {
     /// What it has printed.
     pub(super) fn printed(&self) -> String {
         self.printed.lock().unwrap().clone()
+    }
+
+    /// Its number in the system.
+    pub(super) fn pid(&self) -> i32 {
+        self.pid
     }
 
     fn has_ended(&self) -> bool {

@@ -6,4 +6,6 @@ mod session;
 
 pub use error::TransportError;
 pub use library::{Transport, TransportInfo, scheme};
-pub use session::{Delivered, Opened, Receiver, SessionSettings, TlsFiles, TransportSession};
+pub use session::{
+    Account, Delivered, Opened, Receiver, SessionSettings, SettingFault, TlsFiles, TransportSession, UserKeys,
+};

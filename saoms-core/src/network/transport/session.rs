@@ -1,10 +1,11 @@
 use std::ffi::c_void;
+use std::fmt;
 use std::panic::{self, AssertUnwindSafe};
 use std::ptr;
 use std::sync::Arc;
 
 use saoms_abi::{Bytes, Sink, Status, TransportEvents, TransportTable};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Transport;
 
@@ -15,19 +16,48 @@ pub struct SessionSettings {
     pub url: String,
     /// True for its router, which listens there.
     pub listen: bool,
-    /// The user.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub user: Option<String>,
-    /// The password of the user.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub password: Option<String>,
+    /// The user as which a program joins.
+    #[serde(flatten)]
+    pub account: Option<Account>,
+    /// The users that a router accepts; empty: everybody.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub users: Vec<Account>,
+    /// What these may do; empty: everything.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub access: Vec<UserKeys>,
     /// The files of a TLS connection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tls: Option<TlsFiles>,
 }
 
+/// A user, with a password that is shown nowhere.
+#[derive(Clone, PartialEq, Eq, Serialize)]
+pub struct Account {
+    /// The user.
+    pub user: String,
+    /// The password.
+    pub password: String,
+}
+
+impl fmt::Debug for Account {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_struct("Account").field("user", &self.user).finish_non_exhaustive()
+    }
+}
+
+/// The keys that a user may use, in which `*` stands for one part.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UserKeys {
+    /// The user.
+    pub user: String,
+    /// Those under which the user may send.
+    pub put: Vec<String>,
+    /// Those whose messages the user may receive.
+    pub subscribe: Vec<String>,
+}
+
 /// Paths of the files of a TLS connection.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TlsFiles {
     /// Certificates of those who may vouch for others.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -69,6 +99,31 @@ pub enum Opened {
     Session(TransportSession),
     /// Nobody answers there now: why.
     Unreachable(String),
+}
+
+/// A setting that a transport cannot use.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct SettingFault {
+    /// Its member of the settings: `url`, `user`, `users`, `access`, `ca`, `certificate` or `key`.
+    pub setting: String,
+    /// What is wrong with it, and what to do.
+    pub text: String,
+}
+
+impl Transport {
+    /// Looks at settings without joining the network: what cannot be used, and why.
+    pub fn judge(self, settings: &SessionSettings) -> Vec<SettingFault> {
+        let text = serde_json::to_string(settings).unwrap_or_default();
+        // SAFETY: the table is of this version, and the text lives until the call returns.
+        let (status, faults) = called(|faults| unsafe { (self.table.judge)(Bytes::text(&text), faults) });
+        let whole = |text: &str| vec![SettingFault { setting: "url".to_owned(), text: text.to_owned() }];
+        match status {
+            Status::OK if faults.is_empty() => Vec::new(),
+            Status::OK => serde_json::from_str(&faults)
+                .unwrap_or_else(|error| whole(&format!("its transport answers what is not JSON: {error}"))),
+            _ => whole(&faults),
+        }
+    }
 }
 
 /// A session of a transport. Dropping it closes it.

@@ -1,5 +1,6 @@
 //! The properties that a component of a class, or a loop, is given.
 
+use saoms_api::Secret;
 use saoms_api::host::PropertyValue;
 
 use super::conversion::{Converted, Source, Target, convert};
@@ -128,10 +129,14 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
     /// Converts what was found for a property to what the class takes.
     fn convert(&mut self, place: usize, found: &Raw<'_>, at: Location, source: Option<Location>) -> Judged<()> {
         let mut places: Vec<Location> = found.0.iter().map(Piece::location).collect();
+        let entry = &self.table.all[place];
+        if entry.main.secret || entry.task.is_some_and(|task| task.secret) {
+            let tells = |place: &&Location| !Secret::new(self.report.written(**place)).is_variable();
+            places.iter().filter(tells).for_each(|place| self.report.hide(*place));
+        }
         if places.is_empty() {
             places.push(at);
         }
-        let entry = &self.table.all[place];
         let (faulty, is_copy) = (&*self.parameters.faulty, self.giver.member.is_copy);
         let from = source.map(|at| Source { at, faulty, is_copy });
         let target = Target { outer: None, declaration: entry.main, at, source: from };

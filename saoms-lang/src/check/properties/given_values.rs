@@ -89,6 +89,12 @@ impl PropertyValues {
         Some(GivenValue { value, at, place: *at.places.first()? })
     }
 
+    /// The places of the values that the composite gives the property of this name.
+    pub(crate) fn places_of(&self, name: &str) -> &[Location] {
+        let index = self.values.iter().position(|(known, _)| known == name);
+        index.map_or(&[], |index| &self.places[index].places)
+    }
+
     /// The values of task properties, presets included.
     pub(crate) fn of_task(&self, table: &PropertyTable<'_>) -> Vec<(SmolStr, PropertyValue)> {
         let all = self.values.iter().zip(&self.places);

@@ -233,6 +233,11 @@ impl<'a> Report<'a> {
         self.diagnostics.has_errors() || later.any(|one| one.severity == Severity::Error)
     }
 
+    /// Notes that what is at a place is a secret.
+    pub(crate) fn hide(&self, at: Location) {
+        self.sources.hide(at);
+    }
+
     /// The place of a part of `text`, in bytes of the text as it is meant.
     pub(crate) fn part(&self, text: &Text, part: Range<usize>) -> Location {
         self.parts(text).part(part)

@@ -2,6 +2,7 @@
 
 mod constructors;
 mod languages;
+mod networks;
 mod only_read;
 mod plugin_rules;
 mod similar_names;
@@ -25,6 +26,7 @@ pub(crate) fn check(
 ) {
     only_read::check(fleet, checks, options, report);
     constructors::check_all(fleet, checks, repeated, options, report);
+    networks::check(fleet, checks, report);
     let rules = registry.rules().iter();
     let rules = rules.filter(|rule| !rule.is_only_read() && (!options.without_plugin_code || rule.origin().is_none()));
     plugin_rules::check(fleet, checks, wiring, repeated, rules, report);

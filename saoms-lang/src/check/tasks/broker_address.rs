@@ -1,6 +1,6 @@
 //! The address of a message broker: `host:port`, or with the name of a transport `tls://host:port`.
 
-use std::net::{IpAddr, Ipv6Addr};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::ops::Range;
 
 /// The port of brokers where nothing else is known: that of ActiveMQ, which the original uses.
@@ -33,7 +33,8 @@ pub(crate) fn fault(text: &str) -> Option<AddressFault> {
         };
         if NO_TRANSPORTS.contains(&scheme) {
             let message = format!("found `{scheme}://` before host and port");
-            return Some(AddressFault { at: 0..text.len(), message, instead: instead() });
+            let instead = instead().map(|address| if scheme == "https" { format!("tls://{address}") } else { address });
+            return Some(AddressFault { at: 0..text.len(), message, instead });
         }
         if let Some(found) = scheme.find(|c: char| !(c.is_ascii_alphanumeric() || "+-.".contains(c))) {
             let character = scheme[found..].chars().next().unwrap_or(' ');
@@ -89,9 +90,27 @@ pub(crate) fn fault(text: &str) -> Option<AddressFault> {
     }
 }
 
+/// True if an address without fault names no transport: it is plain TCP.
+pub(crate) fn is_plain(text: &str) -> bool {
+    !text.contains("://")
+}
+
+/// The host and the port of an address without fault.
+pub(crate) fn host_and_port(text: &str) -> (&str, &str) {
+    let address = text.split_once("://").map_or(text, |(_, address)| address);
+    address.rsplit_once(':').unwrap_or((address, ""))
+}
+
+/// The IP address that the host of an address is, where it is one; `localhost` is that of this machine.
+pub(crate) fn ip(text: &str) -> Option<IpAddr> {
+    let (host, _) = host_and_port(text);
+    if host.eq_ignore_ascii_case("localhost") {
+        return Some(IpAddr::V4(Ipv4Addr::LOCALHOST));
+    }
+    host.trim_start_matches('[').trim_end_matches(']').parse().ok()
+}
+
 /// True if an address without fault is of this machine.
 pub(crate) fn is_loopback(text: &str) -> bool {
-    let host = text.rsplit_once(':').map_or(text, |(host, _)| host);
-    let address = host.trim_start_matches('[').trim_end_matches(']').parse::<IpAddr>();
-    host.eq_ignore_ascii_case("localhost") || address.is_ok_and(|address| address.is_loopback())
+    ip(text).is_some_and(|address| address.is_loopback())
 }

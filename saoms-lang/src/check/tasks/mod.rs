@@ -44,7 +44,7 @@ impl Task<'_, '_> {
     /// Checks all values, each alone and those that have to go together: the properties, where they are sound.
     fn check(&self, renamed: &[Renamed], report: &mut Report<'_>) -> Option<TaskProperties> {
         if let Some(url) = self.text("url") {
-            check_url(&url, report);
+            self.url(&url, report);
         }
         self.use_jms(report);
         trigger::check(self, report);
@@ -121,47 +121,59 @@ impl Task<'_, '_> {
         }
     }
 
+    fn url(&self, url: &Text, report: &mut Report<'_>) {
+        if let Some(fault) = broker_address::fault(url) {
+            let at = report.part(url, fault.at);
+            let message = format!("{} is not an address of a message broker: {}", quoted(url), fault.message);
+            let one = Diagnostic::new(&codes::BROKER_URL, at, message)
+                .help("write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535");
+            report.push(match fault.instead {
+                Some(instead) if instead.is_empty() => one.suggest("remove it", at, instead),
+                Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, escaped(&instead)),
+                None => one,
+            });
+        }
+    }
+
     fn credentials(&self, properties: &TaskProperties, report: &mut Report<'_>) {
-        let (user, password) = (self.text("user"), self.text("password"));
-        let both = "give both, or neither";
-        let (given, message, help) = match (user, password) {
-            (Some(user), None) if properties.url.is_none() => {
+        let (user, password) = (self.place("user").filter(|_| properties.user.is_some()), self.text("password"));
+        let (password, file) = (password.map(|text| text.location), self.place("passwordFile"));
+        let file = file.filter(|_| properties.password_file.is_some());
+        let (given, message, help) = match (user, password, file) {
+            (None, None, None) => return self.tls(properties, report),
+            (_, Some(_), Some(file)) => (file, "`password` and `passwordFile` are both given", "keep one of them"),
+            (None, Some(password), _) => (password, "`password` is given without `user`", "give both, or neither"),
+            (None, None, Some(file)) => (file, "`passwordFile` is given without `user`", "give both, or neither"),
+            (Some(user), None, None) if properties.url.is_none() => {
                 (user, "`user` has no effect: there is no `url` of a message broker", "leave it out, or give all three")
             }
-            (Some(user), None) => (user, "`user` is given without `password`", both),
-            (None, Some(password)) => (password, "`password` is given without `user`", both),
-            (Some(user), Some(_)) if properties.url.is_none() => (
+            (Some(user), None, None) => (user, "`user` is given without `password`", "give both, or neither"),
+            (Some(user), ..) if properties.url.is_none() => (
                 user,
                 "`user` and `password` have no effect: there is no `url` of a message broker",
                 "give the `url` of the broker, or leave them out",
             ),
-            _ => return,
+            _ => return self.tls(properties, report),
         };
-        report.push(Diagnostic::new(&codes::CREDENTIALS, given.location, message).help(help));
+        report.push(Diagnostic::new(&codes::CREDENTIALS, given, message).help(help));
     }
-}
 
-fn check_url(url: &Text, report: &mut Report<'_>) {
-    let Some(fault) = broker_address::fault(url) else {
-        if !broker_address::is_loopback(url) {
-            let message = format!(
-                "messages to {} go over the network without protection: users and TLS are not supported yet",
-                quoted(url)
-            );
-            let one = Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message);
-            report.push(one.help("use it in a network alone that nobody else reaches"));
+    /// Reports files for TLS without a network.
+    fn tls(&self, properties: &TaskProperties, report: &mut Report<'_>) {
+        let given = [
+            ("tlsCa", &properties.tls_ca),
+            ("tlsCertificate", &properties.tls_certificate),
+            ("tlsKey", &properties.tls_key),
+        ];
+        let mut given = given.into_iter().filter(|(_, value)| value.is_some());
+        if let Some((name, at)) = given.find_map(|(name, _)| Some((name, self.place(name)?)))
+            && properties.url.is_none()
+        {
+            let message = format!("`{name}` has no effect: there is no `url` of a message broker");
+            let one = Diagnostic::new(&codes::CREDENTIALS, at, message);
+            report.push(one.help("give the `url` of the broker, or leave it out"));
         }
-        return;
-    };
-    let at = report.part(url, fault.at);
-    let message = format!("{} is not an address of a message broker: {}", quoted(url), fault.message);
-    let one = Diagnostic::new(&codes::BROKER_URL, at, message)
-        .help("write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535");
-    report.push(match fault.instead {
-        Some(instead) if instead.is_empty() => one.suggest("remove it", at, instead),
-        Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, escaped(&instead)),
-        None => one,
-    });
+    }
 }
 
 /// Checks the tasks and topics of all components, and which are sound. The values that they share and must not.

@@ -64,7 +64,7 @@ fn values_presets_wires_and_tasks() {
           charger = Complex([("x", Integer(3)), ("y", Integer(4))])
           stops = Many([Integer(1)])
           gps (example.Positions) -> 2 position
-          TaskProperties { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: TopicRenames([("POSTOPIC", "pos")]), overrun: Skip, restart: OnFailure, restart_backoff: 100ms, restart_limit: 5, deadline: None, trigger: TopicList([]), minimum: 1ms, queue: None, loss: Fail }
+          TaskProperties { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, password_file: None, tls_ca: None, tls_certificate: None, tls_key: None, topic_rename: TopicRenames([("POSTOPIC", "pos")]), overrun: Skip, restart: OnFailure, restart_backoff: 100ms, restart_limit: 5, deadline: None, trigger: TopicList([]), minimum: 1ms, queue: None, loss: Fail }
         2 G is a example.Gps
           other (example.Positions) -> nothing
     "#]].assert_eq(&assembly(&[&text], &["pace=2 s"]));
@@ -111,7 +111,7 @@ fn the_files_of_the_manual() {
           ID = Text("Robot001")
           number = Integer(1)
           gps (example.Positions) -> nothing
-          TaskProperties { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: TopicRenames([("POS001", "pos001"), ("POS002", "pos002")]), overrun: Skip, restart: Never, restart_backoff: 100ms, restart_limit: 5, deadline: None, trigger: TopicList([]), minimum: 1ms, queue: None, loss: Fail }
+          TaskProperties { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, password_file: None, tls_ca: None, tls_certificate: None, tls_key: None, topic_rename: TopicRenames([("POS001", "pos001"), ("POS002", "pos002")]), overrun: Skip, restart: Never, restart_backoff: 100ms, restart_limit: 5, deadline: None, trigger: TopicList([]), minimum: 1ms, queue: None, loss: Fail }
     "#]].assert_eq(&assembly(&[broker, &tasks], &[]));
 }
 

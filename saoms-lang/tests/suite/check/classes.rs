@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
+use saoms_api::extension::{Access, Router, RouterClass, TlsPaths, Topics, submit};
 use saoms_api::host::Registration;
 use saoms_api::{
-    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, TaskInterface, Topic,
-    interface,
+    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, Secret, TaskInterface,
+    Topic, interface,
 };
 use saoms_lang::registry::Registry;
 
@@ -220,6 +221,42 @@ pub(crate) struct BrokerProperties {
     address: String,
     #[property(range = 1..=65535)]
     port: u16,
+    transport: Option<String>,
+    user: Option<String>,
+    password: Option<Secret>,
+    password_file: Option<String>,
+    users: Option<String>,
+    /// A user and the topic that this one reads, with a blank between.
+    access: Vec<String>,
+    tls_certificate: Option<String>,
+    tls_key: Option<String>,
+    #[property(default = false)]
+    unprotected: bool,
+}
+
+submit! {
+    RouterClass {
+        class: "example.Broker",
+        router: |values| {
+            let given = BrokerProperties::from_values(values)?;
+            let transport = given.transport.map(|name| format!("{name}://")).unwrap_or_default();
+            let access = given.access.iter().filter_map(|text| text.split_once(' ')).map(|(user, topic)| Access {
+                user: user.to_owned(),
+                reads: Topics::Some(vec![topic.to_owned()]),
+                writes: Topics::default(),
+            });
+            Ok(Router {
+                url: format!("{transport}{}:{}", given.address, given.port),
+                access: access.collect(),
+                user: given.user,
+                password: given.password,
+                password_file: given.password_file,
+                users: given.users,
+                tls: TlsPaths { ca: None, certificate: given.tls_certificate, key: given.tls_key },
+                is_unprotected: given.unprotected,
+            })
+        },
+    }
 }
 
 #[derive(Class)]

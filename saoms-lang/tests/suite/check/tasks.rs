@@ -89,7 +89,7 @@ fn addresses_of_message_brokers() {
     }
     for elsewhere in ["10.0.0.1:1", "[fe80::1]:65535", "broker-1.example.org:80", "localhost.example.org:1"] {
         let found = url(elsewhere);
-        assert!(found.starts_with("3:22") && found.contains("warning S3003"), "{elsewhere}: {found}");
+        assert!(found.starts_with("3:22") && found.contains("warning S4029"), "{elsewhere}: {found}");
         assert!(!found.contains("error"), "{elsewhere}: {found}");
     }
     let all: String = [

@@ -59,7 +59,7 @@ fn two_values_of_a_property_that_takes_one_are_told_where_they_are() {
         2:55-56 error S3011: the property `password` allows one value, found 2
           2:39-40 the first
           4:35-37 used here as `password`
-          help: `password`: The account's password
+          help: `password`: The account's password, or `$NAME` for the environment variable `NAME`
     "#]]
     .assert_eq(&of(&takers(&format!("<property name=\"n\" many=\"true\">{two}</property>"))));
 }
@@ -285,7 +285,7 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
         3:80-83 error S1007: `property` has no attribute `nam`
           fix: replace `nam` with `name` [3:80-83 "name"]
         3:85-86 error S3004: class `example.Robot` has no property `x`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         3:90-98 error S1008: `property` needs the attribute `name`
           help: add `name="..."` to it
     "#]]
@@ -298,7 +298,7 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
         3:80-83 error S1007: `property` has no attribute `nam`
           fix: replace `nam` with `name` [3:80-83 "name"]
         3:85-86 error S3004: class `example.Robot` has no property `x`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         3:90-98 error S1008: `property` needs the attribute `name`
           help: add `name="..."` to it
     "#]]

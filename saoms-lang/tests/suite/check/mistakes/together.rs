@@ -28,7 +28,7 @@ fn a_faulty_expression_hides_nothing_else() {
         3:64-68 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R1`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         3:131-134 error S3004: class `example.Robot` has no property `bat` (in `R1`, index 1)
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R1`, index 1)
           help: the components are `C` and `R*`
           help: add a component of the class `example.Gps`
@@ -43,7 +43,7 @@ fn a_faulty_expression_hides_nothing_else() {
         3:65-69 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R1`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         3:132-135 error S3004: class `example.Robot` has no property `bat` (in `R1`, index 1)
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R1`, index 1)
           help: the components are `C` and `R*`
           help: add a component of the class `example.Gps`
@@ -57,7 +57,7 @@ fn a_faulty_expression_hides_nothing_else() {
         3:65-69 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R1`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         3:132-135 error S3004: class `example.Robot` has no property `bat` (in `R1`, index 1)
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R1`, index 1)
           help: the components are `C` and `R*`
           help: add a component of the class `example.Gps`
@@ -72,7 +72,7 @@ fn a_faulty_expression_hides_nothing_else() {
         3:65-69 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R${inde}`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         3:132-135 error S3004: class `example.Robot` has no property `bat` (in `R${inde}`, index 1)
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R${inde}`, index 1)
           help: the components are `C` and `R*`
           help: add a component of the class `example.Gps`
@@ -87,7 +87,7 @@ fn a_faulty_expression_hides_nothing_else() {
         3:58-62 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
         3:125-128 error S3004: class `example.Robot` has no property `bat`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody`
           help: the components are `C`
           help: add a component of the class `example.Gps`

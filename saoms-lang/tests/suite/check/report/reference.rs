@@ -125,6 +125,16 @@ fn example(code: &Code) -> Result<String, String> {
             let found = found.to_start().compile(&registry);
             (found.diagnostics, found.sources)
         }
+        "S4028" => {
+            let text = fs::read_to_string(folder().join("S4028.composite")).unwrap();
+            let found = Project::new().in_memory().text("fleet.composite", text).compile(&registry());
+            let place = found.output.unwrap().networks.get("Robot001", "passwordFile").unwrap();
+            let message = "component `Robot001`, property `passwordFile`: other users can read or change `robots.password`: \
+                restrict it with `chmod 600`";
+            let one = Diagnostic::new(&codes::NETWORK_FILE, place, message)
+                .help("docs/security.md says how a network is protected");
+            (vec![one], found.sources)
+        }
         "S2035" => {
             let level = |level: u32| {
                 let inner = format!("<implementation.composite name=\"t:hall{}\"/>", level - 1);

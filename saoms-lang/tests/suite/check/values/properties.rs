@@ -104,7 +104,7 @@ fn unknown_and_repeated_properties() {
           4:17-22 first given here
           help: keep one of them
         6:17-23 error S3004: class `example.Robot001` has no property `weight`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `passwordFile`, `tlsCa`, `tlsCertificate`, `tlsKey`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         7:17-20 error S3004: class `example.Robot001` has no property `URL`
           fix: replace `URL` with `url` [7:17-20 "url"]
     "#]].assert_eq(&faults(&robot(

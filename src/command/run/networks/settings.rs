@@ -1,0 +1,245 @@
+//! The settings of networks: what components say of them, with passwords from where they are kept.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::env;
+use std::path::Path;
+
+use saoms_api::Secret;
+use saoms_api::extension::{Access, Router, RouterClass, TlsPaths};
+use saoms_core::network::key;
+use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport};
+use saoms_lang::assembly::{Assembly, TaskProperties};
+use saoms_lang::diagnostic::{Diagnostic, codes};
+
+use super::private;
+
+/// A connection to a network as its components describe it: where several say something, the first one counts; that
+/// they do not differ was checked.
+#[derive(Debug, Default)]
+pub(super) struct Described {
+    /// The component that is the network's router here.
+    pub(super) router: Option<(usize, Router)>,
+    user: Option<(usize, String)>,
+    password: Option<(usize, Secret)>,
+    password_file: Option<(usize, String)>,
+    tls: TlsPaths,
+    /// The components that give the files for TLS.
+    tls_of: [usize; 3],
+    /// The first component on the network.
+    first: usize,
+}
+
+/// The networks of an assembly, by their urls.
+pub(super) fn described(assembly: &Assembly) -> BTreeMap<String, Described> {
+    let mut all: BTreeMap<String, Described> = BTreeMap::new();
+    for (index, spec) in assembly.components.iter().enumerate() {
+        if let Some(router) = RouterClass::read(&spec.class.declaration().name, &spec.values) {
+            let known =
+                all.entry(router.url.clone()).or_insert_with(|| Described { first: index, ..Described::default() });
+            known.router.get_or_insert((index, router));
+        }
+    }
+    for (index, task) in
+        assembly.components.iter().enumerate().filter_map(|(index, spec)| Some((index, spec.task.as_ref()?)))
+    {
+        let Some(url) = &task.url else { continue };
+        let known = all.entry(url.clone()).or_insert_with(|| Described { first: index, ..Described::default() });
+        known.add(index, task);
+    }
+    all
+}
+
+impl Described {
+    fn add(&mut self, index: usize, task: &TaskProperties) {
+        fn first<T: Clone>(known: &mut Option<(usize, T)>, index: usize, given: Option<&T>) {
+            if known.is_none() {
+                *known = given.map(|given| (index, given.clone()));
+            }
+        }
+        first(&mut self.user, index, task.user.as_ref());
+        first(&mut self.password, index, task.password.as_ref());
+        first(&mut self.password_file, index, task.password_file.as_ref());
+        let given = [
+            (&mut self.tls.ca, &task.tls_ca),
+            (&mut self.tls.certificate, &task.tls_certificate),
+            (&mut self.tls.key, &task.tls_key),
+        ];
+        for (place, (known, given)) in given.into_iter().enumerate() {
+            if known.is_none() && given.is_some() {
+                known.clone_from(given);
+                self.tls_of[place] = index;
+            }
+        }
+    }
+}
+
+/// Makes settings of what components say, and notes what cannot be used.
+pub(super) struct Resolver<'r> {
+    pub(super) assembly: &'r Assembly,
+    pub(super) faults: Vec<Diagnostic>,
+}
+
+impl Resolver<'_> {
+    /// The settings of a connection. Faults are noted.
+    pub(super) fn settings(&mut self, url: &str, described: &Described) -> SessionSettings {
+        let mut settings = SessionSettings {
+            url: url.to_owned(),
+            listen: described.router.is_some(),
+            account: None,
+            users: Vec::new(),
+            access: Vec::new(),
+            tls: None,
+        };
+        let (tls, of) = match &described.router {
+            Some((index, router)) => {
+                settings.users = self.users(*index, router);
+                settings.access = granted(described, &settings.users).iter().map(key::of_user).collect();
+                (&router.tls, [*index; 3])
+            }
+            None => {
+                if let Some((index, user)) = &described.user {
+                    let file = described.password_file.as_ref().map(|(of, path)| (*of, path.as_str()));
+                    let password = described.password.as_ref().map(|(of, secret)| (*of, secret));
+                    settings.account = self.account(*index, user, password, file);
+                }
+                (&described.tls, described.tls_of)
+            }
+        };
+        settings.tls = self.tls(tls, of);
+        settings
+    }
+
+    /// Asks a transport whether it can use settings.
+    pub(super) fn judge(&mut self, transport: Transport, settings: &SessionSettings, described: &Described) {
+        for fault in transport.judge(settings) {
+            let router = described.router.as_ref().map(|(index, _)| *index);
+            let tls = |place: usize| router.unwrap_or(described.tls_of[place]);
+            let first = router.unwrap_or(described.first);
+            let (component, property) = match fault.setting.as_str() {
+                "ca" => (tls(0), "tlsCa"),
+                "certificate" => (tls(1), "tlsCertificate"),
+                "key" => (tls(2), "tlsKey"),
+                "user" => (router.or(described.user.as_ref().map(|(index, _)| *index)).unwrap_or(first), "user"),
+                "users" => (first, if self.has(first, "users") { "users" } else { "user" }),
+                _ if router.is_some() => (first, "IP"),
+                _ => (first, "url"),
+            };
+            self.fault(component, property, &fault.text);
+        }
+    }
+
+    fn has(&self, component: usize, property: &str) -> bool {
+        let path = &self.assembly.components[component].path;
+        self.assembly.networks.get(path, property) != self.assembly.networks.get(path, "")
+    }
+
+    /// Notes what is wrong with a property of a component.
+    fn fault(&mut self, component: usize, property: &str, text: &str) {
+        let path = &self.assembly.components[component].path;
+        let Some(place) = self.assembly.networks.get(path, property) else { return };
+        let message = format!("component `{path}`, property `{property}`: {text}");
+        let one = Diagnostic::new(&codes::NETWORK_FILE, place, message);
+        let one = one.help("docs/security.md says how a network is protected");
+        if !self.faults.iter().any(|known| known.location == one.location && known.message == one.message) {
+            self.faults.push(one);
+        }
+    }
+
+    /// A path from the folder of the first composite.
+    fn path(&self, path: &str) -> std::path::PathBuf {
+        self.assembly.networks.folder.join(Path::new(path.trim()))
+    }
+
+    /// A user with a password from where it is kept.
+    fn account(
+        &mut self,
+        component: usize,
+        user: &str,
+        password: Option<(usize, &Secret)>,
+        file: Option<(usize, &str)>,
+    ) -> Option<Account> {
+        let password = match (password, file) {
+            (Some((of, secret)), _) => match secret.resolve(|name| env::var(name).ok()) {
+                Ok(password) => password,
+                Err(name) => {
+                    let text = format!("the environment variable `{name}` is not set, or is no text in UTF-8");
+                    self.fault(of, "password", &text);
+                    return None;
+                }
+            },
+            (None, Some((of, path))) => match private::read(&self.path(path)) {
+                Ok(text) => text.trim_end_matches(['\n', '\r']).to_owned(),
+                Err(text) => {
+                    self.fault(of, "passwordFile", &text);
+                    return None;
+                }
+            },
+            (None, None) => {
+                self.fault(component, "user", "there is no password: give `password` or `passwordFile`");
+                return None;
+            }
+        };
+        Some(Account { user: user.trim().to_owned(), password })
+    }
+
+    /// The users that a router accepts.
+    fn users(&mut self, component: usize, router: &Router) -> Vec<Account> {
+        let mut users = Vec::new();
+        if let Some(user) = &router.user {
+            let password = router.password.as_ref().map(|secret| (component, secret));
+            let file = router.password_file.as_deref().map(|path| (component, path));
+            users.extend(self.account(component, user, password, file));
+        }
+        let Some(path) = &router.users else { return users };
+        let text = match private::read(&self.path(path)) {
+            Ok(text) => text,
+            Err(text) => {
+                self.fault(component, "users", &text);
+                return users;
+            }
+        };
+        let mut seen: BTreeSet<String> = users.iter().map(|one| one.user.clone()).collect();
+        for (line, text) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+            match text.split_once(':') {
+                Some((user, password)) if seen.insert(user.to_owned()) => {
+                    users.push(Account { user: user.to_owned(), password: password.to_owned() });
+                }
+                Some((user, _)) => {
+                    let text = format!("user `{}` is there twice", user.escape_debug());
+                    self.fault(component, "users", &text);
+                }
+                // The line may be a password.
+                None => self.fault(component, "users", &format!("line {} of the file has no `:`", line + 1)),
+            }
+        }
+        if users.is_empty() {
+            self.fault(component, "users", "the file has no user: a line for each is `user:password`");
+        }
+        users
+    }
+
+    /// The files for TLS; the key is nobody else's.
+    fn tls(&mut self, tls: &TlsPaths, of: [usize; 3]) -> Option<TlsFiles> {
+        if *tls == TlsPaths::default() {
+            return None;
+        }
+        if let Some(key) = &tls.key
+            && let Err(text) = private::opened(&self.path(key))
+        {
+            self.fault(of[2], "tlsKey", &text);
+            return None;
+        }
+        let path = |path: &Option<String>| path.as_ref().map(|path| self.path(path).display().to_string());
+        Some(TlsFiles { ca: path(&tls.ca), certificate: path(&tls.certificate), key: path(&tls.key) })
+    }
+}
+
+/// What a router lets each of its users do; nothing where all may do everything. Who is not named may do nothing.
+pub(super) fn granted(described: &Described, users: &[Account]) -> Vec<Access> {
+    let Some((_, router)) = described.router.as_ref().filter(|(_, router)| !router.access.is_empty()) else {
+        return Vec::new();
+    };
+    let named = |user: &str| router.access.iter().find(|access| access.user == user).cloned();
+    let of = |one: &Account| named(&one.user).unwrap_or_else(|| Access { user: one.user.clone(), ..Access::default() });
+    users.iter().map(of).collect()
+}
