@@ -215,7 +215,6 @@ pub(crate) struct Clock;
 component!(Clock, ());
 
 #[derive(Properties)]
-#[expect(dead_code, reason = "never executed")]
 pub(crate) struct BrokerProperties {
     #[property(name = "IP", required_text)]
     address: String,
