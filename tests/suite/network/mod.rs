@@ -10,6 +10,7 @@ mod nodes;
 mod passwords;
 mod programs;
 mod proxy;
+mod python;
 mod secrets;
 mod tls;
 mod together;

@@ -153,6 +153,16 @@ impl Programs {
             run.arg("--plugin").arg(library);
         }
         configure(&mut run);
+        self.watch(name, run)
+    }
+
+    /// Starts a program that is not the command, where the files of the programs are.
+    pub(super) fn other(&self, name: &str, mut program: Command) -> Arc<Program> {
+        program.current_dir(self.folder.path());
+        self.watch(name, program)
+    }
+
+    fn watch(&self, name: &str, mut run: Command) -> Arc<Program> {
         let mut child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let printed = Arc::<Mutex<String>>::default();
         let (out, err) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
