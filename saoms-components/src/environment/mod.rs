@@ -201,6 +201,8 @@ impl Environment {
         for (header, removal) in context.receive(&self.removals).with_headers() {
             if self.validator.accepts(removal, header, self.map.as_ref(), context) {
                 self.open.retain(|luggage, _| !removal.delivered.contains(luggage));
+                let execution = context.execution();
+                self.open.iter_mut().for_each(|(number, job)| job.hear_removal(*number, removal, execution));
             }
         }
         for (header, response) in context.receive(&self.responses).with_headers() {
@@ -212,7 +214,7 @@ impl Environment {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,
                 _ => {
-                    self.open.entry(response.luggage).and_modify(|job| job.passed_on = true);
+                    self.open.entry(response.luggage).and_modify(|job| job.hear(response));
                     continue;
                 }
             };

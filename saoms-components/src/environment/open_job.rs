@@ -4,7 +4,7 @@ use saoms_api::{Context, Failure, Field};
 
 use super::{Environment, MAX_EVENTS};
 use crate::grid::Block;
-use crate::messages::{EventLuggage, VISIT, Visit};
+use crate::messages::{EventLuggage, LuggageStage, Removal, VISIT, Visit};
 
 /// Luggage or a visit that is published and not done yet.
 #[derive(Clone, Debug, Field)]
@@ -16,11 +16,15 @@ pub(super) struct OpenJob {
     pub(super) is_visit: bool,
     /// The only robot that may do it; 0 for any.
     robot: u32,
+    /// The robot that took it last; 0 if none has it.
+    bearer: u32,
     /// Execution in which it is published again, unless it was passed on until then: a master that failed may have lost
     /// it.
     again: u64,
     /// Number of executions from one publication to the next, which doubles.
     pause: u64,
+    /// True if it was published again.
+    repeated: bool,
 }
 
 /// Number of executions after which luggage that nobody passed on is published again.
@@ -28,7 +32,31 @@ const AGAIN: u64 = 50;
 
 impl OpenJob {
     pub(super) fn new(stops: Vec<Block>, (is_visit, robot): (bool, u32), execution: u64) -> OpenJob {
-        OpenJob { passed_on: false, stops, is_visit, robot, again: execution + AGAIN, pause: 2 * AGAIN }
+        let (again, pause) = (execution + AGAIN, 2 * AGAIN);
+        OpenJob { passed_on: false, stops, is_visit, robot, bearer: 0, again, pause, repeated: false }
+    }
+
+    /// Notes what was said about it.
+    pub(super) fn hear(&mut self, said: &EventLuggage) {
+        self.passed_on = true;
+        match said.stage {
+            LuggageStage::Taken => self.bearer = said.robot,
+            LuggageStage::Request => self.bearer = 0,
+            _ => self.bearer = if self.bearer == said.robot { 0 } else { self.bearer },
+        }
+    }
+
+    /// A robot is out, which has left luggage on its block: a master that does not know what that robot was to bring
+    /// requests nothing.
+    pub(super) fn hear_removal(&mut self, number: u32, removal: &Removal, execution: u64) {
+        let carried = removal.luggage.contains(&number);
+        if carried || self.bearer == removal.robot {
+            (self.passed_on, self.bearer) = (false, 0);
+            (self.again, self.pause) = (execution + AGAIN, 2 * AGAIN);
+        }
+        if let Some(from) = self.stops.first_mut().filter(|_| carried) {
+            *from = removal.block;
+        }
     }
 }
 
@@ -45,6 +73,9 @@ impl Environment {
         for (number, job) in due.take(MAX_EVENTS) {
             job.again = execution + job.pause;
             job.pause = job.pause.saturating_mul(2);
+            if !std::mem::replace(&mut job.repeated, true) && !job.is_visit {
+                context.count("scenario.repeated", 1);
+            }
             match (job.is_visit, job.stops.as_slice()) {
                 (true, stops) => {
                     let visit = Visit { visit: *number, robot: job.robot, stops: stops.to_vec() };

@@ -190,7 +190,7 @@ impl RunInvariants for FleetInvariants {
             Finder { site: "", at, found: &mut self.found }.note(ONCE, text);
         }
         // What no master heard of is not delivered either. One that forgot what it knew may count a piece twice.
-        let put_down = counts("scenario.luggage") - counts("luggage.ignored");
+        let put_down = counts("scenario.luggage") - (counts("luggage.ignored") - counts("scenario.known"));
         let requested = requested.max(usize::try_from(put_down).unwrap_or_default());
         let seconds = at.since(Time::START).as_secs_f64();
         let figure = |name, value| Measure { name, value, of: None };

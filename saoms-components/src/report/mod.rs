@@ -37,9 +37,10 @@ fn result(count: &Counts<'_>) -> Option<String> {
 }
 
 /// The pieces that are to be delivered: those that masters asked robots for, or more where masters did not hear of all
-/// that scenarios put down.
+/// that scenarios put down. A master that lost its memory may have asked twice for what was published again.
 fn asked_for(count: &Counts<'_>) -> i64 {
-    count("luggage.requested").max(count("scenario.luggage") - count("luggage.ignored"))
+    let requested = count("luggage.requested") - count("scenario.repeated");
+    requested.max(count("scenario.luggage") - (count("luggage.ignored") - count("scenario.known")))
 }
 
 /// `1 of 1 pieces of luggage delivered`, `3 of 5 errands finished`; `None` if nothing was requested.
@@ -99,5 +100,13 @@ mod tests {
             _ => counts(2, 0)(path),
         };
         assert_eq!(progress(&unheard).unwrap(), "3 of 30 pieces of luggage delivered");
+        let twice = |path: &str| match path {
+            "scenario.luggage" => 24,
+            "scenario.repeated" => 2,
+            "luggage.ignored" => 3,
+            "scenario.known" => 3,
+            _ => counts(25, 0)(path),
+        };
+        assert_eq!(progress(&twice).unwrap(), "3 of 24 pieces of luggage delivered");
     }
 }

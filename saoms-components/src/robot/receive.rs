@@ -5,8 +5,8 @@ use saoms_api::{Context, Failure, Header, Region, Subscription, record, warn};
 use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
 use crate::grid::Block;
 use crate::messages::{
-    ASSIGNMENT, Assignment, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, IMMOVABLE, LuggageStage, POSITION, Position,
-    ROBOT_LIST, RobotList, VISIT, Visit, is_visit,
+    ASSIGNMENT, Assignment, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, LuggageStage, POSITION,
+    Position, ROBOT_LIST, RobotList, VISIT, Visit, is_visit,
 };
 use crate::validation::Validate;
 
@@ -136,6 +136,7 @@ impl RobotKnowledge {
             return;
         }
         self.lists.gone.note(fault, header);
+        self.routes.note_failure(robot, fault.kind == FaultKind::Restarting);
         self.lists.end_of(robot);
     }
 

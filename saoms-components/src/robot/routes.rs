@@ -14,6 +14,8 @@ pub struct Routes {
     area: Option<Area>,
     /// Robots that do not move any more, and their blocks: several for one that may be on any of them.
     obstacles: Vec<(u32, Block)>,
+    /// Robots that have failed and start again soon.
+    returning: Vec<u32>,
     /// Cached searches: [`WAYS`] of them, once one was needed. Asking about a block continues a search.
     ways: RefCell<Vec<Way>>,
     /// Counter of lookups, for the age of cached searches.
@@ -28,6 +30,7 @@ pub struct Routes {
 #[derive(Clone, Debug, Field)]
 pub(super) struct RoutesMemory {
     obstacles: Vec<Obstacle>,
+    returning: Vec<u32>,
     changes: u32,
 }
 
@@ -119,12 +122,13 @@ impl Routes {
 
     pub(super) fn memory(&self) -> RoutesMemory {
         let obstacles = self.obstacles.iter().map(|&(robot, block)| Obstacle { robot, block });
-        RoutesMemory { obstacles: obstacles.collect(), changes: self.changes }
+        RoutesMemory { obstacles: obstacles.collect(), returning: self.returning.clone(), changes: self.changes }
     }
 
     /// Restores what is known beside the map.
     pub(super) fn restore(&mut self, memory: &RoutesMemory) {
         self.obstacles = memory.obstacles.iter().map(|obstacle| (obstacle.robot, obstacle.block)).collect();
+        self.returning.clone_from(&memory.returning);
         self.changes = memory.changes;
     }
 
@@ -170,7 +174,7 @@ impl Routes {
         {
             return;
         }
-        self.forget_obstacle(robot);
+        self.remove_obstacle(robot);
         self.obstacles.extend(blocks.iter().map(|block| (robot, *block)));
         if let Some(area) = &mut self.area {
             area.empty.get_or_insert_with(|| area.map.clone());
@@ -181,8 +185,24 @@ impl Routes {
         self.forget_searches();
     }
 
+    /// Notes whether a robot that has failed starts again: a way that only such robots close is open again then.
+    pub fn note_failure(&mut self, robot: u32, returns: bool) {
+        let was_returning = self.returning.contains(&robot);
+        self.returning.retain(|known| *known != robot);
+        if returns {
+            self.returning.push(robot);
+        } else if was_returning {
+            self.changes = self.changes.wrapping_add(1);
+        }
+    }
+
     /// Removes an obstacle: the robot moves again.
     pub fn forget_obstacle(&mut self, robot: u32) {
+        self.returning.retain(|known| *known != robot);
+        self.remove_obstacle(robot);
+    }
+
+    fn remove_obstacle(&mut self, robot: u32) {
         let known = self.obstacles.len();
         self.obstacles.retain(|(other, _)| *other != robot);
         if self.obstacles.len() == known {
@@ -246,6 +266,26 @@ impl Routes {
             self.cost(place, from, to)
         };
         if cost == UNREACHABLE { UNREACHABLE } else { cost.div_ceil(MOVE) }
+    }
+
+    /// True if there is a way from one block to another once the robots have started again that failed and are about
+    /// to.
+    pub fn may_open(&self, from: Block, to: Block) -> bool {
+        let Some(area) = &self.area else { return false };
+        let (soon, stay): (Vec<_>, Vec<_>) =
+            self.obstacles.iter().partition(|(robot, _)| self.returning.contains(robot));
+        let Some(empty) = area.empty.as_ref().filter(|_| !soon.is_empty()) else { return false };
+        if !area.searched {
+            // Such a map has no blocked blocks: only a robot on the first or the last one can be in the way.
+            return true;
+        }
+        let mut map = empty.clone();
+        stay.iter().for_each(|(_, block)| _ = map.set_blocked(*block));
+        let mut ways = Distances::default();
+        let beside = stay.iter().any(|(_, obstacle)| *obstacle == to);
+        let search = if beside { Distances::search_beside } else { Distances::search };
+        search(&mut ways, &map, to);
+        ways.of(&map, &area.chargers, from) != UNREACHABLE
     }
 
     /// Prepares [`to_goal`](Routes::to_goal) for this block.

@@ -246,3 +246,18 @@ fn a_robot_on_its_way_to_sleep_is_called_back_for_luggage_that_waits() {
     let job = log.split_once("takes luggage 1 ").unwrap().1.split_once("deposited luggage 1 ").unwrap().0;
     assert!(job.contains("wakes up"), "{log}");
 }
+
+#[test]
+fn a_master_that_hears_late_does_not_assign_luggage_again_and_again() {
+    // An answer takes four seconds, and the master asks another robot after 0.8 s, until it knows that.
+    let robots: Vec<(u32, u32, &str)> = (0..6).map(|y| (0, 2 * y, "")).collect();
+    for policy in ["oldest", "optimal"] {
+        let scenario = "at 0s delay 2s from Master; at 0s delay 2s to Master; \
+            at 1s 12 times luggage (0,0)..(11,11) to (0,0)..(11,11); \
+            from 20s every 2s 24 times luggage (0,0)..(11,11) to (0,0)..(11,11)";
+        let run = delivers(&fleet(12, &format!("assignment={policy}"), scenario, &robots), 1, 36);
+        let log = run.log_of("Master").join("\n");
+        let (assigned, back) = (log.matches("assigns luggage").count(), log.matches(" back from robot").count());
+        assert!((36..=72).contains(&assigned) && back <= 12, "{policy}: {assigned} and {back}: {log}");
+    }
+}

@@ -171,7 +171,24 @@ fn luggage_that_a_crashed_master_lost_is_asked_for_again() {
         let context = format!("crash at {} ms", 10 * at);
         assert_eq!(section(&report, "luggage")["delivered"], 1, "{context}");
         assert_eq!(section(&report, "errands")["finished"], 1, "{context}");
+        let count = |of: &str, name: &str| section(&report, of)[name].as_i64().unwrap_or_default();
+        assert!(count("luggage", "requested") - count("scenario", "repeated") <= 1, "{context}");
         assert_eq!(report.outcome.status, RunStatus::Done, "{context}");
+    }
+}
+
+/// A master that has forgotten what a robot was to bring does not request it when that robot is gone.
+#[test]
+fn luggage_of_a_robot_that_is_gone_is_asked_for_again_although_no_master_knows_it() {
+    for (at, assignment) in [("1900ms", "robots"), ("4s", "robots"), ("1900ms", "oldest"), ("4s", "optimal")] {
+        // Robot 1 is on its way to the luggage, or carries it.
+        let scenario =
+            format!("at 1s luggage (4,0) to (0,3); at 1500ms crash Master restart 200ms; at {at} gone Robot1");
+        let master = format!("<property name=\"assignment\">{assignment}</property>");
+        let class = "<implementation.java class=\"saoms.MasterEnvironment\"/>";
+        let text = with_scenario(&scenario).replacen(class, &[class, &master].concat(), 1);
+        let report = Fleet::of_text(text).run(1, Duration::from_secs(200)).into_report();
+        assert_eq!(section(&report, "luggage")["delivered"], 1, "{at}, {assignment}");
     }
 }
 

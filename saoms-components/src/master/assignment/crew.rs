@@ -15,8 +15,11 @@ use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageSta
 const REST: u32 = 8;
 const DOUBLED: u32 = 6;
 
-/// Number of periods of the slowest robot within which a robot answers.
+/// Number of periods of the slowest robot within which a robot answers where messages arrive at once.
 const ANSWER: u32 = 8;
+
+/// Number of answers after which most of a late one is forgotten.
+const LATE_MEMORY: u32 = 32;
 
 /// A robot, as the master knows it.
 #[derive(Clone, Debug, Default, PartialEq, Field)]
@@ -39,8 +42,19 @@ pub struct Member {
     pub asked: Option<u32>,
     /// Time until which it is to answer, or until which it is not asked again.
     pub until: Time,
+    /// Number of the luggage that it is told to hand back, until it does.
+    pub withdrawn: Option<u32>,
     period: u64,
     moved: Time,
+    /// When it said that it took the last luggage.
+    took_at: Time,
+    /// Time of the last assignment.
+    asked_at: Time,
+    /// The luggage of the last assignment that it did not answer in time, until it does, and when that was.
+    late: Option<u32>,
+    late_at: Time,
+    /// How often in a row it did not answer in time.
+    silent: u32,
     /// How often it handed luggage back since it took some.
     handed_back: u32,
     /// True if it works for another master, as its position says.
@@ -62,6 +76,10 @@ pub struct Crew {
     unanswered: Vec<(u32, u32, Time)>,
     /// Longest period of the robots, in microseconds.
     slowest: u64,
+    /// The longest time that an answer took, and less with each further answer.
+    answers_take: Duration,
+    /// When robots said last that they do not bring luggage that is open, by luggage and robot.
+    left: BTreeMap<(u32, u32), Time>,
     /// Shortest time from one block to the next that a robot took.
     step: Option<Duration>,
     /// True if something changed that makes other assignments possible.
@@ -131,6 +149,11 @@ impl Crew {
             Member { robot: said.robot, block: said.block, ..Member::default() }
         });
         self.changed |= member.asleep != said.asleep;
+        let fills_up = said.battery >= 100.0 && member.battery < 100.0;
+        if fills_up && member.handed_back > 0 && member.asked.is_none() {
+            // Its battery may last now for what it handed back.
+            (member.until, self.changed) = (Time::START, true);
+        }
         (member.charger, member.battery, member.asleep, member.period) =
             (said.charger, said.battery, said.asleep, said.period);
         member.away = false;
@@ -172,7 +195,7 @@ impl Crew {
         match said.stage {
             LuggageStage::Taken => {
                 (member.job, member.asked, member.collected) = (luggage, None, false);
-                member.handed_back = 0;
+                (member.handed_back, member.withdrawn) = (0, None);
             }
             LuggageStage::Delivered | LuggageStage::Refused | LuggageStage::GivenUp | LuggageStage::Release => {
                 if member.job == luggage {
@@ -182,11 +205,61 @@ impl Crew {
                     member.handed_back = (member.handed_back + 1).min(DOUBLED);
                 }
                 member.asked.take_if(|asked| Some(*asked) == luggage);
+                member.withdrawn.take_if(|withdrawn| Some(*withdrawn) == luggage);
             }
             LuggageStage::Request | LuggageStage::Interest => return,
         }
         self.changed = true;
         self.sort(said.robot);
+    }
+
+    /// True if a robot said since that it has left this luggage, or taken other luggage: messages may overtake each
+    /// other.
+    pub(super) fn is_outdated(&mut self, said: &EventLuggage, sent: Time) -> bool {
+        let EventLuggage { luggage, robot, stage, .. } = *said;
+        match stage {
+            LuggageStage::Taken => {
+                let left_since = self.left.get(&(luggage, robot)).is_some_and(|left| *left > sent);
+                let member = self.members.get_mut(&robot);
+                let took_since = member.as_ref().is_some_and(|member| member.took_at > sent);
+                if let Some(member) = member.filter(|_| !left_since && !took_since) {
+                    member.took_at = sent;
+                }
+                left_since || took_since
+            }
+            LuggageStage::Release | LuggageStage::Refused => {
+                let left = self.left.entry((luggage, robot)).or_default();
+                *left = sent.max(*left);
+                false
+            }
+            LuggageStage::Delivered | LuggageStage::GivenUp => {
+                let of_luggage = self.left.range((luggage, 0)..=(luggage, u32::MAX)).map(|(key, _)| *key);
+                for key in of_luggage.collect::<Vec<_>>() {
+                    self.left.remove(&key);
+                }
+                false
+            }
+            LuggageStage::Request | LuggageStage::Interest => false,
+        }
+    }
+
+    /// Notes how long a robot took to answer an assignment. True if it answers an earlier one than the last one of this
+    /// luggage: the answer to that is still to come.
+    pub(super) fn note_answer(&mut self, said: &EventLuggage, now: Time) -> bool {
+        let stages = [LuggageStage::Taken, LuggageStage::Refused, LuggageStage::Release];
+        let Some(member) = self.members.get_mut(&said.robot).filter(|_| stages.contains(&said.stage)) else {
+            return false;
+        };
+        let luggage = Some(said.luggage);
+        let (is_late, is_asked) = (member.late == luggage, member.asked == luggage);
+        if !is_late && !is_asked {
+            return false;
+        }
+        let took = now.since(if is_late { member.late_at } else { member.asked_at });
+        self.answers_take = took.max(self.answers_take - self.answers_take / LATE_MEMORY);
+        member.silent = 0;
+        member.late.take_if(|_| is_late);
+        is_late && is_asked && said.stage == LuggageStage::Release
     }
 
     /// Handles a call for help, or who follows it.
@@ -218,10 +291,18 @@ impl Crew {
 
     /// Luggage is assigned to a robot.
     pub(in crate::master) fn ask(&mut self, robot: u32, luggage: u32, now: Time) {
-        let until = now + self.slowest().saturating_mul(ANSWER);
+        let answer = self.slowest().saturating_mul(ANSWER).max(self.answers_take.saturating_mul(2));
         if let Some(member) = self.members.get_mut(&robot) {
-            (member.asked, member.until) = (Some(luggage), until);
+            (member.asked, member.asked_at) = (Some(luggage), now);
+            member.until = now + answer.saturating_mul(1 << member.silent);
             self.sort(robot);
+        }
+    }
+
+    /// A robot is told to hand back its luggage.
+    pub(super) fn withdraw(&mut self, robot: u32, luggage: u32) {
+        if let Some(member) = self.members.get_mut(&robot).filter(|member| member.job == Some(luggage)) {
+            member.withdrawn = Some(luggage);
         }
     }
 
@@ -234,7 +315,8 @@ impl Crew {
             if let Some(member) = self.members.get_mut(&robot).filter(|member| member.until <= now)
                 && let Some(luggage) = member.asked.take()
             {
-                member.until = rest;
+                (member.until, member.late, member.late_at) = (rest, Some(luggage), member.asked_at);
+                member.silent = (member.silent + 1).min(DOUBLED);
                 silent.push((robot, luggage));
                 self.sort(robot);
             }

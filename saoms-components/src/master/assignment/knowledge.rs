@@ -100,7 +100,10 @@ impl MasterEnvironmentKnowledge {
     }
 
     /// Handles what a robot said about luggage. A robot that takes what another one has taken has to give it back.
-    pub(in crate::master) fn hear_response(&mut self, said: &EventLuggage, now: Time) {
+    pub(in crate::master) fn hear_response(&mut self, said: &EventLuggage, sent: Time, now: Time) {
+        if self.crew.is_outdated(said, sent) || self.crew.note_answer(said, now) {
+            return;
+        }
         match said.stage {
             LuggageStage::Interest => {
                 self.open.discuss(said.luggage, now + self.crew.slowest().saturating_mul(DISCUSSION));
@@ -139,7 +142,10 @@ impl MasterEnvironmentKnowledge {
 
     /// Robots on the way to luggage that they have not collected.
     pub(super) fn on_the_way(&self) -> Vec<(Candidate, WaitingPiece)> {
-        let on_the_way = self.crew.members().filter(|member| !member.collected && member.asked.is_none());
+        let on_the_way = self.crew.members().filter(|member| {
+            let is_told = member.asked.is_some() || member.withdrawn.is_some();
+            !(member.collected || is_told)
+        });
         let with_piece = on_the_way.filter_map(|member| {
             let piece = self.open.job(member.job?).filter(|piece| piece.only.is_none())?;
             Some((Candidate { robot: member.robot, block: member.block }, piece))
@@ -176,7 +182,9 @@ impl MasterEnvironmentKnowledge {
 
     /// Notes what is sent to robots.
     pub(in crate::master) fn note_assigned(&mut self, assignment: &Assignment, now: Time) {
-        if !assignment.withdrawn {
+        if assignment.withdrawn {
+            self.crew.withdraw(assignment.robot, assignment.luggage);
+        } else {
             self.open.ask(assignment.luggage, assignment.robot);
             self.crew.ask(assignment.robot, assignment.luggage, now);
         }

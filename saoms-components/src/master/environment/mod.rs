@@ -423,9 +423,9 @@ impl MasterEnvironment {
         }
         if said.stage == LuggageStage::Request {
             self.knowledge.filter.note(said.luggage);
-            self.knowledge.hear_response(said, context.now());
+            self.knowledge.hear_response(said, header.sent, context.now());
         } else if self.knowledge.filter.knows(said.luggage) {
-            self.knowledge.hear_response(said, context.now());
+            self.knowledge.hear_response(said, header.sent, context.now());
         } else {
             context.count("messages.ignored", 1);
             self.knowledge.validator.log_rejection(context, header, said, Problem::UnknownLuggage);

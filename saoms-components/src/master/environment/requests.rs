@@ -32,8 +32,8 @@ impl MasterEnvironment {
                 return Ok(());
             }
         }
-        if self.knowledge.open.job(luggage).is_some_and(|known| (known.job.from, known.job.to) == (from, to)) {
-            // Nobody has said yet what becomes of it.
+        if self.knowledge.open.job(luggage).is_some_and(|known| known.job.to == to) {
+            // Nobody has said yet what becomes of it, or a robot has left it elsewhere.
             return Ok(());
         }
         match self.knowledge.filter.luggage(request) {
@@ -44,6 +44,10 @@ impl MasterEnvironment {
             }
             Err(refusal) => {
                 context.count("luggage.ignored", 1);
+                if !refusal.is_lost {
+                    // What is published again may be done: it is no other piece.
+                    context.count("scenario.known", 1);
+                }
                 self.knowledge.validator.log_rejection(context, header, request, refusal.problem);
                 match refusal.is_lost {
                     true => context.send(&self.luggage, EventLuggage::given_up(luggage, from, to)),

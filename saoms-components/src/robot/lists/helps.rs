@@ -195,6 +195,11 @@ impl Helps {
         }
     }
 
+    /// Considers again the requests to which no way led.
+    pub(in crate::robot) fn judge_again(&mut self) {
+        self.open.iter_mut().filter(|help| help.needs == super::WAY_CLOSED).for_each(|help| help.needs = 0);
+    }
+
     /// Leaves a request to other robots for good.
     pub fn refuse(&mut self, request: &CriticalSituation) {
         self.open.retain(|help| !help.is_for(request));

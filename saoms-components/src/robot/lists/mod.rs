@@ -18,6 +18,7 @@ pub(super) use memory::ListsMemory;
 
 pub use helps::{Help, Helps};
 pub use peers::Peers;
+pub(in crate::robot) use requests::WAY_CLOSED;
 pub use requests::{Assigned, Request, Requests, Rival};
 pub use shown::WaitingLuggage;
 

@@ -17,6 +17,9 @@ pub struct Rival {
     pub block: Block,
 }
 
+/// What the battery has to last for a request to which no way leads for now.
+pub(in crate::robot) const WAY_CLOSED: u32 = u32::MAX;
+
 /// Luggage that waits for a robot.
 #[derive(Clone, Debug, Field)]
 pub struct Request {
@@ -29,7 +32,7 @@ pub struct Request {
     /// Other robots that took an interest and did not take it back.
     pub rivals: Vec<Rival>,
     /// Number of executions that the battery has to last before this robot considers the request again; 0 if it did not
-    /// consider it yet.
+    /// consider it yet, and the greatest number until the ways change.
     pub needs: u32,
     /// True if this robot found out, while it could take no job, that the luggage is within its reach.
     pub judged: bool,
@@ -90,6 +93,8 @@ pub struct Requests {
     visits: BTreeMap<u32, Visit>,
     /// Luggage that a robot took, brought or gave up: a request that only repeats an earlier one does not count.
     settled: Numbers,
+    /// Luggage that was delivered: a robot that came too late for it may request it again.
+    delivered: Numbers,
     /// Luggage that a master assigned to this robot, or took back, which the robot has not answered yet.
     assigned: Vec<Assigned>,
     /// When luggage was requested last that nobody took since. That somebody took it before may be heard later.
@@ -119,6 +124,7 @@ pub(in crate::robot) struct RequestsMemory {
     refusals: Vec<Refusal>,
     visits: Vec<Visit>,
     settled: Numbers,
+    delivered: Numbers,
     assigned: Vec<Assigned>,
     requested: Vec<Requested>,
 }
@@ -151,6 +157,7 @@ impl Requests {
             refusals: self.refusals.iter().map(|&(luggage, robot)| Refusal { luggage, robot }).collect(),
             visits: self.visits.values().cloned().collect(),
             settled: self.settled.clone(),
+            delivered: self.delivered.clone(),
             assigned: self.assigned.clone(),
             requested: self.requested.iter().map(|(&luggage, &at)| Requested { luggage, at }).collect(),
         }
@@ -160,7 +167,7 @@ impl Requests {
         (self.open, self.claimed, self.refused) = (memory.open, memory.claimed, memory.refused);
         self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
         self.visits = memory.visits.into_iter().map(|visit| (visit.visit, visit)).collect();
-        (self.settled, self.assigned) = (memory.settled, memory.assigned);
+        (self.settled, self.delivered, self.assigned) = (memory.settled, memory.delivered, memory.assigned);
         self.requested = memory.requested.iter().map(|requested| (requested.luggage, requested.at)).collect();
     }
 
@@ -174,6 +181,7 @@ impl Requests {
             refusals: BTreeSet::new(),
             visits: BTreeMap::new(),
             settled: Numbers::default(),
+            delivered: Numbers::default(),
             assigned: Vec::new(),
             requested: BTreeMap::new(),
         }
@@ -239,6 +247,9 @@ impl Requests {
         if matches!(event.stage, LuggageStage::Delivered | LuggageStage::GivenUp) {
             self.visits.remove(&event.luggage);
         }
+        if event.stage == LuggageStage::Delivered {
+            self.delivered.insert(event.luggage);
+        }
         if event.robot == self.number {
             return self.hear_own(event);
         }
@@ -280,7 +291,8 @@ impl Requests {
 
     fn hear_request(&mut self, event: &EventLuggage, header: Header) {
         let is_again = event.robot != 0;
-        if !event.is_request_for(self.number) || is_again && self.settled.contains(event.luggage) {
+        let is_over = self.delivered.contains(event.luggage) || is_again && self.settled.contains(event.luggage);
+        if !event.is_request_for(self.number) || is_over {
             return;
         }
         if !is_again {
@@ -378,9 +390,15 @@ impl Requests {
         self.refusals.contains(&(luggage, robot))
     }
 
-    /// Forgets the results that were found out about requests while this robot could take no job.
+    /// Forgets the results that were found out about requests while this robot could take no job, and that no way led
+    /// to them.
     pub fn judge_again(&mut self) {
-        self.open.iter_mut().for_each(|request| request.judged = false);
+        for request in &mut self.open {
+            request.judged = false;
+            if request.needs == WAY_CLOSED {
+                request.needs = 0;
+            }
+        }
     }
 
     /// Considers all requests again, also those for which the battery did not last.

@@ -59,6 +59,17 @@ fn luggage_that_was_taken_before_it_was_requested_again_waits() {
 }
 
 #[test]
+fn luggage_that_was_delivered_does_not_wait_again() {
+    let mut lists = lists();
+    lists.requests.hear(&response(2, 1, LuggageStage::Delivered), at(4));
+    // A robot that took it too late, and could not collect it.
+    lists.requests.hear(&request(2), at(5));
+    lists.requests.hear(&request(4), at(5));
+    lists.requests.hear(&response(4, 1, LuggageStage::Delivered), at(5));
+    assert_eq!(open(&lists), [1, 3]);
+}
+
+#[test]
 fn a_request_that_is_repeated_for_a_robot_is_for_that_one_and_opens_nothing_again() {
     let mut lists = lists();
     lists.requests.hear(&request(4).again_for(MINE), at(4));

@@ -1,6 +1,6 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record};
 
-use crate::grid::{Block, UNREACHABLE};
+use crate::grid::Block;
 use crate::robot::battery::gain::Gain;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::{RobotKnowledge, Trouble};
@@ -59,6 +59,13 @@ pub enum SafeBatterySymptom {
         charger: Block,
         /// Block of the other charger.
         other: Block,
+        /// True if a robot is in the way that has failed and starts again.
+        for_now: bool,
+    },
+    /// A way leads to its own charger again.
+    Open {
+        /// Block of its charger.
+        own: Block,
     },
     /// Others are in the way to the charger for long, and another charger is free.
     HeldUp {
@@ -110,6 +117,8 @@ pub enum SafeBatteryDecision {
     Leave,
     /// Charge at another charger from now on.
     Use(Block),
+    /// Charge at another charger until a way leads to its own one again.
+    Replace(Block),
     /// Charge at another charger this time.
     Borrow(Block),
     /// Start or end charging.
@@ -139,7 +148,10 @@ impl Recordable for SafeBatterySymptom {
                 charger,
                 other
             ),
-            SafeBatterySymptom::CutOff { charger, other } => {
+            SafeBatterySymptom::Open { own } => {
+                record!(charger_open: "a path leads to its charger at {own} again", own)
+            }
+            SafeBatterySymptom::CutOff { charger, other, .. } => {
                 record!(
                     charger_cut_off: "no path leads to its charger at {charger} any more, but one leads to {other}",
                     charger,
@@ -174,6 +186,9 @@ impl Recordable for SafeBatteryDecision {
             SafeBatteryDecision::Stop => record!(stops_with_empty_battery: "stops where it is"),
             SafeBatteryDecision::Leave => record!(leaves_charger: "leaves its charger: the battery lasts for its work"),
             SafeBatteryDecision::Use(other) => record!(changes_charger: "charges at {other} from now on", other),
+            SafeBatteryDecision::Replace(other) => {
+                record!(replaces_charger: "charges at {other} until a path leads to its own charger again", other)
+            }
             SafeBatteryDecision::Borrow(other) => record!(borrows_charger: "charges at {other} this time", other),
             SafeBatteryDecision::BeInCharge(true) => record!(starts_charging: "starts charging"),
             SafeBatteryDecision::BeInCharge(false) => record!(stops_charging: "stops charging"),
@@ -216,10 +231,9 @@ impl Loop for SafeBattery {
         }
         let changes = knowledge.routes.changes();
         if std::mem::replace(&mut self.changes, changes) != changes
-            && let Some(other) = knowledge.other_charger()
+            && let Some(symptom) = self.look_at_ways(knowledge)
         {
-            let charger = knowledge.charge_block;
-            return Ok(Some(SafeBatterySymptom::CutOff { charger, other }));
+            return Ok(Some(symptom));
         }
         let battery = knowledge.battery.percent();
         let must_charge = knowledge.must_charge;
@@ -276,7 +290,10 @@ impl Loop for SafeBattery {
             SafeBatterySymptom::NoGain { other: Some(other), .. } => SafeBatteryDecision::Borrow(other),
             SafeBatterySymptom::NoGain { other: None, .. } => SafeBatteryDecision::Wait,
             SafeBatterySymptom::Charged { .. } => SafeBatteryDecision::Leave,
-            SafeBatterySymptom::CutOff { other, .. } => SafeBatteryDecision::Use(other),
+            SafeBatterySymptom::CutOff { other, for_now: true, .. } => SafeBatteryDecision::Replace(other),
+            SafeBatterySymptom::CutOff { other, .. } | SafeBatterySymptom::Open { own: other } => {
+                SafeBatteryDecision::Use(other)
+            }
             SafeBatterySymptom::OutOfReach { other, .. } | SafeBatterySymptom::HeldUp { other, .. } => {
                 SafeBatteryDecision::Borrow(other)
             }
@@ -314,9 +331,14 @@ impl Loop for SafeBattery {
                 }
             }
             SafeBatteryDecision::Use(other) => {
-                self.own = None;
+                let when = if self.own.take() == Some(other) { "again" } else { "from now on" };
                 knowledge.use_charger(other);
-                info!(context, "charges at {other} from now on");
+                info!(context, "charges at {other} {when}");
+            }
+            SafeBatteryDecision::Replace(other) => {
+                self.own = self.own.or(Some(knowledge.charge_block));
+                knowledge.use_charger(other);
+                info!(context, "charges at {other} until a path leads to its own charger again");
             }
             SafeBatteryDecision::Borrow(other) => {
                 let charger = knowledge.charge_block;
@@ -350,82 +372,23 @@ impl RobotKnowledge {
         let others = self.lists.chargers.iter().map(|(_, charger)| *charger);
         self.routes.use_charger(charger, others);
     }
-
-    /// The closest free charger, otherwise the closest one where another robot is, if the battery lasts for the way to
-    /// it. At one where another robot is, this one can wait.
-    fn charger_elsewhere(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
-        if self.next != self.block {
-            return None;
-        }
-        let own = self.charge_block;
-        let ((is_used, way), closest) = self.closest_charger(true, |charger| charger != own && gives(charger))?;
-        let waiting = if is_used { self.usual_reserve() / 2 } else { 0 };
-        let lasts = self.executions_left() > self.home_to(closest).saturating_add(waiting);
-        (way != UNREACHABLE && lasts).then_some(closest)
-    }
-
-    /// The closest free charger that is closer than the robot's own, if the battery does not last for the way to its
-    /// own.
-    fn charger_in_reach(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
-        let home = self.home(self.next);
-        if self.executions_left() > home || self.next != self.block {
-            return None;
-        }
-        let left = self.executions_left();
-        let unclaimed = self.unclaimed_charger(&gives).filter(|closest| self.home_to(*closest) < left);
-        let closest = unclaimed.or_else(|| self.closest_charger(false, gives).map(|(_, closest)| closest))?;
-        (self.home_to(closest) < home).then_some(closest)
-    }
-
-    /// The closest free charger to which no other robot is on its way because it has to charge.
-    fn unclaimed_charger(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
-        let places = self.lists.charging_places.iter().copied();
-        let claimed: Vec<Block> = places.filter(|charger| self.is_claimed(*charger)).collect();
-        let (_, closest) = self.closest_charger(false, |charger| gives(charger) && !claimed.contains(&charger))?;
-        Some(closest)
-    }
-
-    /// The closest free charger to which no other robot is on its way, if others have held the robot up on the way to
-    /// its own for as long as the way there takes, and the battery lasts for that.
-    fn charger_on_detour(&mut self, gives: impl Fn(Block) -> bool) -> Option<Block> {
-        let (held_up, own) = (self.energy.held_up(), self.charge_block);
-        if held_up == 0 || self.next != self.block {
-            return None;
-        }
-        let closest = self.unclaimed_charger(|charger| charger != own && gives(charger))?;
-        let there = self.home_to(closest);
-        let lasts = self.executions_left() > there.saturating_add(self.usual_reserve() / 2);
-        (held_up >= there && lasts).then_some(closest)
-    }
-
-    /// The closest of these chargers, those without a robot first, or these alone: if another robot is there, the
-    /// number of moves, and its block.
-    fn closest_charger(&mut self, also_used: bool, is_meant: impl Fn(Block) -> bool) -> Option<((bool, u32), Block)> {
-        let RobotKnowledge { lists, routes, next, .. } = self;
-        let meant = lists.charging_places.iter().copied().filter(|one| is_meant(*one) && !routes.is_obstacle(*one));
-        let meant: Vec<(bool, Block)> = meant.map(|one| (lists.peers.on(one).is_some(), one)).collect();
-        let ways = meant.into_iter().filter(|(is_used, _)| also_used || !is_used);
-        ways.map(|(is_used, one)| ((is_used, routes.between(*next, one)), one)).min()
-    }
-
-    /// Another charger, if no way leads to the robot's own: the closest one that no robot uses any more, otherwise the
-    /// closest one, where robots charge one after the other.
-    fn other_charger(&mut self) -> Option<Block> {
-        if self.routes.between(self.next, self.charge_block) != UNREACHABLE
-            && !self.routes.is_obstacle(self.charge_block)
-        {
-            return None;
-        }
-        let RobotKnowledge { lists, routes, next, .. } = self;
-        let chargers = lists.chargers.iter().filter(|(_, charger)| !routes.is_obstacle(*charger));
-        let chargers: Vec<(bool, Block)> =
-            chargers.map(|(robot, charger)| (lists.is_active(*robot), *charger)).collect();
-        let ways = chargers.into_iter().map(|(used, charger)| (used, routes.between(*next, charger), charger));
-        ways.filter(|(_, way, _)| *way != UNREACHABLE).min().map(|(_, _, charger)| charger)
-    }
 }
 
 impl SafeBattery {
+    /// Checks the way to the charger when the ways changed.
+    fn look_at_ways(&mut self, knowledge: &mut RobotKnowledge) -> Option<SafeBatterySymptom> {
+        let (next, charger) = (knowledge.next, knowledge.charge_block);
+        if let Some(own) = self.own.filter(|_| !knowledge.must_charge)
+            && knowledge.leads_to(own)
+        {
+            return Some(SafeBatterySymptom::Open { own });
+        }
+        let other = knowledge.other_charger()?;
+        // One that its robot has only borrowed or been given for now is replaced by any other one.
+        let for_now = self.own.is_some() || knowledge.routes.may_open(next, charger);
+        Some(SafeBatterySymptom::CutOff { charger, other, for_now })
+    }
+
     /// The symptom of a charger that gives nothing: at first, and now and then once another one may be free.
     fn without_gain(
         &mut self,

@@ -5,6 +5,7 @@ use std::time::Duration;
 use saoms_api::{Cause, Field};
 
 use crate::grid::{Block, UNREACHABLE};
+use crate::robot::lists::WAY_CLOSED;
 use crate::robot::{Job, RobotKnowledge, Variables};
 
 use super::leg::Urgency;
@@ -46,6 +47,8 @@ pub(crate) struct Energy {
     set_out_for: Option<u32>,
     /// True if the robot was free when this execution began.
     was_free: bool,
+    /// Number of executions that the battery has to last for the luggage that it handed back to a master; 0 for none.
+    pub(super) lacks: u32,
     /// True if its charger gave nothing not long ago.
     pub(super) gives_nothing: bool,
     /// How it gets on with the way to its charger.
@@ -90,6 +93,8 @@ pub(super) enum Feasibility {
     Enough,
     /// The battery has to last for this number of executions.
     Needs(u32),
+    /// No way leads to the job until a robot that has failed has started again.
+    Later,
     /// No way leads to the job, or no full battery lasts.
     Never,
 }
@@ -223,6 +228,14 @@ impl RobotKnowledge {
         self.battery.is_full() || self.executions_left() >= self.executions_when_full() / 4 * 3
     }
 
+    /// True if the robot is well charged, and its battery lasts for luggage that waits for it alone to be charged.
+    pub(super) fn has_enough(&self) -> bool {
+        let left = self.executions_left();
+        let requests = self.lists.requests.open().iter().filter(|request| request.needs != WAY_CLOSED);
+        let waiting = requests.map(|request| request.needs).min().unwrap_or(0);
+        self.battery.is_full() || self.is_well_charged() && left >= waiting && left >= self.energy.lacks
+    }
+
     /// True if the robot need not return to its charger yet: the battery lasts to do so later, or to finish its job
     /// before.
     pub(super) fn goes_on(&mut self) -> bool {
@@ -262,6 +275,7 @@ impl RobotKnowledge {
         // A full battery lasts once zones answer soon again.
         let is_late = self.latency() > USUAL_LATENCY && usual > full;
         match (self.is_within(job, full), left == full) {
+            (false, _) if self.may_open_for(job) => Feasibility::Later,
             (false, _) => Feasibility::Never,
             (true, true) if !is_late => Feasibility::Enough,
             (true, _) => Feasibility::Needs(usual.min(full)),
@@ -271,6 +285,20 @@ impl RobotKnowledge {
     /// True if no path leads to a job, or from where it begins to where it ends.
     pub(super) fn is_cut_off_from(&mut self, job: &Job) -> bool {
         self.moves(self.next, job, false) == UNREACHABLE
+    }
+
+    /// True if a way leads to a job, through it and to the charger once robots that have failed have started again.
+    fn may_open_for(&mut self, job: &Job) -> bool {
+        let stops = self.stops_of(job);
+        let ends = [job.from, job.to];
+        let blocks = if stops.is_empty() { &ends[..] } else { &stops[..] };
+        let ways: Vec<Block> = [&[self.next], blocks, &[self.charge_block]].concat();
+        let mut is_closed = false;
+        ways.windows(2).all(|way| {
+            let is_open = self.routes.between(way[0], way[1]) != UNREACHABLE;
+            is_closed |= !is_open;
+            is_open || self.routes.may_open(way[0], way[1])
+        }) && is_closed
     }
 
     /// Number of moves from a block through the whole job, or to the end of one whose luggage is on board.

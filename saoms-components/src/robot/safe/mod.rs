@@ -10,6 +10,7 @@
 //!   robots meet, the one with the lower priority makes way. See [`SafeCollision`] and [`SafePathFollower`].
 
 mod battery;
+mod chargers;
 mod collision;
 mod critical;
 mod dead_end;

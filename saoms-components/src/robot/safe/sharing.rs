@@ -17,7 +17,7 @@ const WAITING_AT: u32 = 2;
 impl RobotKnowledge {
     /// True if a robot at a charger that it shares still needs it, and may keep it.
     pub(super) fn keeps_shared_charger(&self) -> bool {
-        let needs = (self.must_charge && !self.battery.is_full()) || !self.is_well_charged();
+        let needs = (self.must_charge && !self.battery.is_full()) || !self.has_enough();
         if !needs || self.energy.gives_nothing {
             return false;
         }
@@ -32,7 +32,7 @@ impl RobotKnowledge {
         }
         let Some(there) = self.at_shared_charger() else { return false };
         let keeps = there.priority == IMMOVABLE;
-        if self.must_charge { keeps && !self.is_exhausted() } else { keeps || self.is_well_charged() }
+        if self.must_charge { keeps && !self.is_exhausted() } else { keeps || self.has_enough() }
     }
 
     /// True if another robot is on its way to this charger, which it has to reach in time.

@@ -101,6 +101,26 @@ fn a_robot_that_arrives_at_a_charger_that_it_shares_stays_there() {
 }
 
 #[test]
+fn a_robot_charges_at_a_shared_charger_until_it_can_take_what_waits() {
+    // The way from the charger through the job and back takes nine tenths of a battery.
+    for (has_zone, assignment) in [(false, "robots"), (true, "robots"), (true, "oldest"), (true, "optimal")] {
+        let site = Site {
+            map: &["............"; 12].join("\n"),
+            times: (1000, 0),
+            battery: (0.29, 1.16, 2.2),
+            has_zone,
+            border: None,
+            assignment,
+            robots: &[((0, 0), (0, 2), 60.0), ((0, 0), (2, 0), 60.0)],
+            scenario: "at 1s luggage (11,0) to (0,11)",
+        };
+        let run = site.run(1);
+        assert_served(&run, 1, &format!("zone {has_zone}, {assignment}"));
+        assert!(run.time_s < 300.0, "zone {has_zone}, {assignment}: {}", run.log());
+    }
+}
+
+#[test]
 fn robots_do_not_queue_in_a_dead_end_out_of_which_others_come() {
     for has_zone in [false, true] {
         let site = Site {

@@ -10,6 +10,7 @@ use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
     LuggageStage, ROBOT_STATE, RobotState,
 };
+use crate::robot::lists::WAY_CLOSED;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::{ASSISTANCE, Help, Rival, RobotKnowledge, Trouble};
 
@@ -186,6 +187,7 @@ impl Loop for SafeCriticalSituation {
                 Some(job) => match knowledge.means(&job) {
                     Feasibility::Enough => SafeCriticalDecision::Offer(situation),
                     Feasibility::Needs(needs) => SafeCriticalDecision::Postpone { situation, needs },
+                    Feasibility::Later => SafeCriticalDecision::AwaitWay(situation),
                     Feasibility::Never => SafeCriticalDecision::Refuse(situation),
                 },
             },
@@ -222,6 +224,9 @@ impl Loop for SafeCriticalSituation {
             }
             SafeCriticalDecision::Postpone { situation, needs } => {
                 knowledge.lists.helps.postpone(&situation, needs);
+            }
+            SafeCriticalDecision::AwaitWay(situation) => {
+                knowledge.lists.helps.postpone(&situation, WAY_CLOSED);
             }
             SafeCriticalDecision::Refuse(situation) => {
                 knowledge.lists.helps.refuse(&situation);

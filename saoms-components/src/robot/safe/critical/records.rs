@@ -83,6 +83,8 @@ pub enum SafeCriticalDecision {
         /// Number of executions that the battery has to last.
         needs: u32,
     },
+    /// Consider the request again when the ways have changed.
+    AwaitWay(CriticalSituation),
     /// Leave the request to other robots: it is out of reach.
     Refuse(CriticalSituation),
     /// Help.
@@ -216,6 +218,9 @@ impl Recordable for SafeCriticalDecision {
                     charges_first: "charges first: the battery has to last {needs} {needs:execution|executions}",
                     needs
                 )
+            }
+            SafeCriticalDecision::AwaitWay(_) => {
+                record!(awaits_way: "waits until a robot in the only way there has started again")
             }
             SafeCriticalDecision::Refuse(CriticalSituation { critical, .. }) => {
                 record!(refuses_help: "leaves robot {robot} to other robots: it can never help it", robot = critical)

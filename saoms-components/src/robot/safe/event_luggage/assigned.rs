@@ -33,7 +33,11 @@ pub(super) fn decide_about_assigned(job: Job, knowledge: &mut RobotKnowledge) ->
     knowledge.keep_usual_reserve();
     match knowledge.means(&job) {
         Feasibility::Enough => SafeLuggageDecision::Take(job),
-        Feasibility::Needs(_) => SafeLuggageDecision::HandBack(job),
+        Feasibility::Needs(needs) => {
+            knowledge.energy.lacks = needs;
+            SafeLuggageDecision::HandBack(job)
+        }
+        Feasibility::Later => SafeLuggageDecision::HandBack(job),
         Feasibility::Never => {
             let why = if knowledge.is_cut_off_from(&job) { Hindrance::NoWay } else { Hindrance::Battery };
             SafeLuggageDecision::Refuse { job, why }
@@ -57,6 +61,7 @@ impl RobotKnowledge {
         let decided = std::mem::replace(&mut self.variables.transporter, true);
         self.is_assigned = !decided || self.job.is_some();
         self.variables.busy = true;
+        self.energy.lacks = 0;
         self.job = Some(job);
         self.lists.requests.take(job.luggage);
     }

@@ -7,6 +7,7 @@ use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publishe
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage};
+use crate::robot::lists::WAY_CLOSED;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::{ASSISTANCE, Job, JobEnd, Request, RobotKnowledge};
 
@@ -137,6 +138,7 @@ impl Loop for SafeEventLuggage {
                 }
                 Feasibility::Enough => SafeLuggageDecision::TakeInterest { place, job },
                 Feasibility::Needs(needs) => SafeLuggageDecision::Postpone { place, needs },
+                Feasibility::Later => SafeLuggageDecision::AwaitWay { place },
                 Feasibility::Never => {
                     let why = if knowledge.is_cut_off_from(&job) { Hindrance::NoWay } else { Hindrance::Battery };
                     SafeLuggageDecision::Refuse { job, why }
@@ -176,6 +178,10 @@ impl Loop for SafeEventLuggage {
             }
             SafeLuggageDecision::Postpone { place, needs } => {
                 knowledge.lists.requests.open_mut()[place].needs = needs;
+                return Ok(());
+            }
+            SafeLuggageDecision::AwaitWay { place } => {
+                knowledge.lists.requests.open_mut()[place].needs = WAY_CLOSED;
                 return Ok(());
             }
             SafeLuggageDecision::Refuse { job, why } => {
@@ -259,9 +265,11 @@ impl SafeEventLuggage {
         }
         if before.changes != seen.changes {
             knowledge.lists.requests.judge_again();
+            knowledge.lists.helps.judge_again();
         }
         let (job, to) = (knowledge.job?, seen.goal?);
-        let reached = knowledge.routes.between(knowledge.next, to) != UNREACHABLE;
+        let next = knowledge.next;
+        let reached = knowledge.routes.between(next, to) != UNREACHABLE || knowledge.routes.may_open(next, to);
         let carries = knowledge.variables.has_luggage;
         (!reached).then_some(SafeLuggageSymptom::CutOff { job, to, carries })
     }

@@ -84,6 +84,11 @@ pub enum SafeLuggageDecision {
         /// Number of executions that the battery has to last.
         needs: u32,
     },
+    /// Consider the request again when the ways have changed.
+    AwaitWay {
+        /// Index of the request on the list.
+        place: usize,
+    },
     /// Leave the luggage to other robots for good.
     Refuse {
         /// The job.
@@ -215,6 +220,9 @@ impl Recordable for SafeLuggageDecision {
                     charges_first: "charges first: the battery has to last {needs} {needs:execution|executions}",
                     needs
                 )
+            }
+            SafeLuggageDecision::AwaitWay { .. } => {
+                record!(awaits_way: "waits until a robot in the only way there has started again")
             }
             SafeLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
                 record!(refuses_luggage: "leaves luggage {luggage} to other robots: it can never carry it", luggage)
