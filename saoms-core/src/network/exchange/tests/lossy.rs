@@ -75,6 +75,11 @@ impl Lossy {
         network
     }
 
+    /// From now on the network does this.
+    pub(super) fn change(&mut self, weather: Weather) {
+        self.weather = weather;
+    }
+
     /// Another program joins.
     pub(super) fn join(&mut self) {
         self.join_with(&format!("Robot{}", self.programs.len()), 0);
