@@ -95,7 +95,11 @@ impl HardwareClient {
 
     /// Asks for the area.
     pub(crate) fn area(&mut self, context: &mut Context<'_>) -> Result<Reply<Map>, Failure> {
-        let area = match reply(self.hardware.area(context))? {
+        let answer = self.hardware.area(context);
+        self.absent = is_absent(&answer);
+        // That the hardware is not started is told by others.
+        self.patience.note(self.absent || answer.is_ok(), busy(&answer), context);
+        let area = match reply(answer)? {
             Reply::Answer(area) => area,
             Reply::Later => return Ok(Reply::Later),
         };
