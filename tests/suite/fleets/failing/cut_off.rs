@@ -25,7 +25,9 @@ fn run(has_zone: bool, assignment: &str, start: (&str, &str), crash: &str, scena
         add("Zone", "Zone", &[]);
     }
     add("MasterEnvironment", "Master", &[("assignment", assignment)]);
-    let scenario = format!("at 0s slow robot=2 factor=1000 lasting=3s; at 2s crash Robot2{crash}; {scenario}");
+    // Where there is a zone, the world has the robot from 200 ms on.
+    let slow = "at 0s slow robot=2 factor=1000 lasting=3s; at 300ms slow robot=2 factor=1000 lasting=3s";
+    let scenario = format!("{slow}; at 2s crash Robot2{crash}; {scenario}");
     add("Environment", "Environment", &[("scenario", &scenario)]);
     for (id, charger, start) in
         [("Robot1", ("0", "0"), start), ("Robot2", ("6", "2"), ("3", "1")), ("Robot3", ("6", "0"), ("5", "0"))]
