@@ -102,8 +102,8 @@ fn files_made_to_take_much() {
 /// Memory that a component may take beside 20 times its text, in bytes.
 const COMPONENT: usize = 4_000;
 
-/// Without faults neither the 16 MB nor the 4 kB are needed: the limit here holds for fleets of any size, also where each
-/// component is a line.
+/// Without faults neither the 16 MB nor the 4 kB are needed: the limit here holds for fleets of any size, also where
+/// each component is a line.
 #[test]
 fn fleets_by_their_size_alone() {
     const SIZE: usize = 300_000;

@@ -5,7 +5,8 @@ use std::time::Duration;
 use saoms_core::report::RunStatus;
 use saoms_testkit::{Fleet, Run};
 
-/// Two rooms and a door between them. Robot 1 starts on this block; robot 2 fails in the door two seconds after its start.
+/// Two rooms and a door between them. Robot 1 starts on this block; robot 2 fails in the door two seconds after its
+/// start.
 fn run(has_zone: bool, assignment: &str, start: (&str, &str), crash: &str, scenario: &str) -> Run {
     let mut text = String::new();
     let mut add = |class: &str, id: &str, properties: &[(&str, &str)]| {
