@@ -79,7 +79,10 @@ fn what_is_taken_fits_into_the_text() {
 fn attributes_are_those_that_are_missing() {
     assert_eq!(
         proposed(&composite("<component |")),
-        ["name", "autowire", "policySets", "requires", "s:count", "s:from", "s:if", "s:overrides", "s:path", "s:site"]
+        [
+            "name", "autowire", "policySets", "requires", "s:count", "s:from", "s:if", "s:node", "s:overrides",
+            "s:path", "s:site"
+        ]
     );
     let left = proposed(&composite("<component name=\"R\" |/>"));
     assert!(!left.contains(&"name".to_owned()), "{left:?}");
