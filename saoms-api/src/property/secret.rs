@@ -26,21 +26,21 @@ const USUAL_VARIABLE: &str = "SAOMS_PASSWORD";
 /// ```
 #[derive(Clone, PartialEq, Eq)]
 pub struct Secret {
-    text: SmolStr,
-    /// The variable that the text came from.
-    origin: Option<SmolStr>,
+    /// The text, and the variable that it came from. Boxed, since few components have one.
+    parts: Box<(SmolStr, Option<SmolStr>)>,
 }
 
 impl Secret {
     /// A secret, as a composite gives it.
     pub fn new(text: impl Into<SmolStr>) -> Secret {
-        Secret { text: text.into(), origin: None }
+        Secret { parts: Box::new((text.into(), None)) }
     }
 
     /// The same secret, which came from an environment variable.
     #[must_use]
-    pub fn from_variable(self, name: impl Into<SmolStr>) -> Secret {
-        Secret { origin: Some(name.into()), ..self }
+    pub fn from_variable(mut self, name: impl Into<SmolStr>) -> Secret {
+        self.parts.1 = Some(name.into());
+        self
     }
 
     /// The secret itself, with `get` for the values of environment variables.
@@ -50,7 +50,7 @@ impl Secret {
     pub fn resolve(&self, get: impl FnOnce(&str) -> Option<String>) -> Result<String, &str> {
         match self.variable() {
             Some(name) => get(name).ok_or(name),
-            None => Ok(self.text.to_string()),
+            None => Ok(self.parts.0.to_string()),
         }
     }
 
@@ -61,13 +61,13 @@ impl Secret {
 
     /// What is written in its place.
     pub fn shown(&self) -> SmolStr {
-        let name = self.variable().or(self.origin.as_deref()).unwrap_or(USUAL_VARIABLE);
+        let name = self.variable().or(self.parts.1.as_deref()).unwrap_or(USUAL_VARIABLE);
         format!("${name}").into()
     }
 
     /// The name of the environment variable that the text names.
     fn variable(&self) -> Option<&str> {
-        let name = self.text.strip_prefix('$')?;
+        let name = self.parts.0.strip_prefix('$')?;
         let is_name = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
         (is_name && name.starts_with(|first: char| !first.is_ascii_digit())).then_some(name)
     }

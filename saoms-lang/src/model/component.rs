@@ -23,13 +23,13 @@ pub struct ComponentElement {
     /// Its references in order.
     pub references: Vec<ReferenceElement>,
     /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
-    pub path: Option<Text>,
+    pub path: Option<Box<Text>>,
     /// `site`, in the namespace of SAOMS: the site of the component and of all that is inside it.
-    pub site: Option<Text>,
+    pub site: Option<Box<Text>>,
     /// `node`, in the namespace of SAOMS: the program that runs the component and all that is inside it.
-    pub node: Option<Text>,
+    pub node: Option<Box<Text>>,
     /// `if`, in the namespace of SAOMS: it is there only where this is true.
-    pub condition: Option<Text>,
+    pub condition: Option<Box<Text>>,
     /// Its replicas, in the namespace of SAOMS; `None` for a single component.
     pub replicas: Option<Box<Replicas>>,
     /// `autowire`.

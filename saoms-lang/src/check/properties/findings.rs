@@ -124,7 +124,7 @@ fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Loca
     let beside = place.property_name().zip(subject.element).and_then(|(name, element)| match name.split_once(',') {
         Some((_, topic)) => {
             let renamed = subject.renamed.iter().find(|one| *one.old == *topic).map(|one| &one.new);
-            renamed.or(element.site.as_ref())
+            renamed.or(element.site.as_deref())
         }
         None => {
             let reference = element.reference(name)?;

@@ -35,7 +35,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
         let site = self.site(component, unit, owner);
         let node = self.node(component, unit, owner);
-        let own = component.path.as_ref();
+        let own = component.path.as_deref();
         let path = match owner.map(|owner| self.fleet.members[owner].path()) {
             Some(around) => Some(format!("{around}/{}", own.unwrap_or(&component.name))),
             None => own.map(|own| own.to_string()),

@@ -16,7 +16,7 @@ pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     }
     let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
     for member in fleet.members.iter().filter(|one| !one.is_partial && !one.component.name.is_empty()) {
-        let given = member.component.path.as_ref();
+        let given = member.component.path.as_deref();
         let place = given.unwrap_or(&member.component.name).location;
         let earlier = first.entry(member.path()).or_insert(place);
         if *earlier != place && given.is_some() {

@@ -125,7 +125,7 @@ fn replace(component: &mut ComponentElement, table: &Table, row: usize) {
 /// Every text of a component but those that lead to other files.
 fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) {
     each(&mut component.name);
-    component.path.iter_mut().chain(&mut component.site).chain(&mut component.node).for_each(&mut *each);
+    [&mut component.path, &mut component.site, &mut component.node].into_iter().flatten().for_each(|text| each(text));
     if let Some(implementation) = &mut component.implementation {
         use crate::model::ImplementationKind::{Java, Rust};
         if let Java { class } | Rust { class, .. } = &mut implementation.kind {
