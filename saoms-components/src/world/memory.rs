@@ -7,6 +7,7 @@ use saoms_api::{Failure, Field, Message, Saved, Time, Work};
 use super::World;
 use super::luggage::{PieceMemory, Stock};
 use super::referee::{Body, Meeting, Referee, Slowness};
+use super::strain::EarlyFault;
 use crate::grid::Block;
 use crate::hardware::{Action, Progress};
 use crate::messages::Removal;
@@ -34,6 +35,7 @@ struct WorldMemory {
     collided: u64,
     broken: Vec<u32>,
     left: Vec<Removal>,
+    early: Vec<EarlyFault>,
 }
 
 #[derive(Clone, Debug, Field)]
@@ -133,6 +135,7 @@ impl World {
             collided: self.collided as u64,
             broken: self.broken.iter().copied().collect(),
             left: self.left.values().cloned().collect(),
+            early: self.early.clone(),
         })
     }
 
@@ -146,6 +149,7 @@ impl World {
         self.collided = usize::try_from(memory.collided).unwrap_or(usize::MAX);
         self.broken = memory.broken.into_iter().collect();
         self.left = memory.left.into_iter().map(|left| (left.robot, left)).collect();
+        self.early = memory.early;
         self.memory.forget();
         Ok(())
     }

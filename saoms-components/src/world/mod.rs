@@ -29,6 +29,7 @@ pub use properties::WorldProperties;
 use luggage::Stock;
 use memory::Memory;
 use referee::Referee;
+use strain::EarlyFault;
 
 /// The physical world of a fleet.
 ///
@@ -73,6 +74,8 @@ pub struct World {
     removals_asked: Subscription<Fault>,
     /// What it said last that a robot left, by robot.
     left: BTreeMap<u32, Removal>,
+    /// Faults of robots that are not on the floor yet.
+    early: Vec<EarlyFault>,
     vote: Option<Work>,
     /// Number of collisions.
     collided: usize,
@@ -102,6 +105,7 @@ impl Component for World {
             removals: Publisher::default(),
             removals_asked: Subscription::default(),
             left: BTreeMap::new(),
+            early: Vec::new(),
             vote: None,
             collided: 0,
             broken: BTreeSet::new(),
@@ -183,6 +187,7 @@ impl Component for World {
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.end_early(context);
         self.report_row(context);
         Ok(())
     }

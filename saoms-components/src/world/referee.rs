@@ -184,10 +184,11 @@ impl Referee {
         }
     }
 
-    /// Makes a robot slow. False if it is not in this world.
-    pub(super) fn slow_down(&mut self, robot: u32, slowness: Slowness) -> bool {
-        let body = self.bodies.get_mut(&robot);
-        body.map(|body| body.slow = Some(slowness)).is_some()
+    /// Makes a robot of this world slow.
+    pub(super) fn slow_down(&mut self, robot: u32, slowness: Slowness) {
+        if let Some(body) = self.bodies.get_mut(&robot) {
+            body.slow = Some(slowness);
+        }
     }
 
     /// The time that an action takes which takes `usual` otherwise: of a slow robot so many times that, and at least so

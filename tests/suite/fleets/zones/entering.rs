@@ -65,3 +65,15 @@ fn a_robot_that_was_gone_comes_back_onto_a_free_block() {
         assert_eq!(fleet.violations(1, limit), "", "{context}");
     }
 }
+
+/// Faults are said for a robot when the run begins, before it stands on the floor.
+#[test]
+fn a_robot_that_is_not_on_the_floor_yet_is_slow_once_it_enters() {
+    let scenario = "at 0s slow robot=1 factor=3; at 0s slow robot=2 factor=2; at 6s luggage (1,0) to (9,0)";
+    let run = crossing(&[50], scenario, 1).run(1, Duration::from_secs(120));
+    let log = run.log_of("World");
+    for said in ["robot 1 takes 3 times as long", "robot 2 takes 2 times as long"] {
+        assert!(log.iter().any(|line| line.contains(said)), "{said}: {}", run.log());
+    }
+    assert_eq!((delivered(&run), run.count("faults.applied.slow"), run.count("faults.ignored")), (1, 2, 0));
+}
