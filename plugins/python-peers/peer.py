@@ -14,8 +14,9 @@ PATIENCE = 2.0  # seconds without a sign of life after which others miss this pr
 INTERVAL = 0.2  # seconds between two signs of life
 SILENT, OPEN, DONE = range(3)  # votes
 
-ENVELOPE = message(program="uint64", number="uint64", component="string", to="string", key="uint64", has_key="bool",
-                   sent="uint64", schema="uint64", cause="uint64")
+ENCLOSED = message(size="uint32", to="string", key="uint64", has_key="bool", sent="uint64", cause="uint64")
+ENVELOPE = message(program="uint64", component="string", schema="uint64", number="uint64",
+                   messages={"sequence": ENCLOSED})
 SENDS = message(topic="string", is_state="bool", last="uint64", oldest="uint64")
 READS = message(topic="string")
 RECEIVED = message(program="uint64", topic="string", next="uint64")
@@ -95,10 +96,11 @@ class Peer:
 
     def send(self, topic, value):
         (_, schema, schema_number), outgoing = self.topics[topic], self.outgoing[topic]
-        key = value[schema["key"]] if "key" in schema else None
-        envelope = dict(program=self.program, number=outgoing.last + 1, component=self.name, to="", key=key or 0,
-                        has_key=key is not None, sent=time.time_ns(), schema=schema_number, cause=0)
-        outgoing.keep(key, encode(schema, value), encode(ENVELOPE, envelope))
+        key, payload = value[schema["key"]] if "key" in schema else None, encode(schema, value)
+        enclosed = dict(size=len(payload), to="", key=key or 0, has_key=key is not None, sent=time.time_ns(), cause=0)
+        envelope = dict(program=self.program, component=self.name, schema=schema_number, number=outgoing.last + 1,
+                        messages=[enclosed])
+        outgoing.keep(key, payload, encode(ENVELOPE, envelope))
         self.put(f"topic/{topic}/{self.name}", *outgoing.kept[outgoing.last])
 
     def receive(self, seconds):
@@ -181,12 +183,13 @@ class Peer:
         payload = sample.payload.to_bytes()
         if what in ("topic", "again") and sample.attachment:
             envelope = decode(ENVELOPE, sample.attachment.to_bytes())
-            topic, number = names[what == "again"], envelope["number"]
-            one = self.incoming[envelope["program"], topic]
-            one.last = max(one.last, number)
-            if number >= one.next:
-                is_known = envelope["schema"] == self.topics[topic][2]
-                one.waiting[number] = (topic, envelope["component"], payload) if is_known else None
+            topic, at = names[what == "again"], 0
+            one, is_known = self.incoming[envelope["program"], topic], envelope["schema"] == self.topics[topic][2]
+            for number, enclosed in enumerate(envelope["messages"], envelope["number"]):
+                value, at = payload[at:at + enclosed["size"]], at + enclosed["size"]
+                one.last = max(one.last, number)
+                if number >= one.next:
+                    one.waiting[number] = (topic, envelope["component"], value) if is_known else None
             yield from one.ready()
         elif what == "alive":
             alive = decode(ALIVE, payload)

@@ -32,6 +32,8 @@ const ROOM_AGAIN: Duration = Duration::from_millis(1);
 /// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
 /// they have.
 const MOST_UNDELIVERED: usize = 4_096;
+/// Messages of components after which the network gets what they say, at most.
+const MOST_AT_ONCE: usize = 1_024;
 /// Time from one word of a router about rights to the next.
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 /// Time for which a program that ends waits until others have received its events.
@@ -248,7 +250,13 @@ impl<F: Fleet> Member<F> {
             self.next = self.exchange.tick(self.now());
             self.carry_out();
         }
-        messages.into_iter().for_each(|message| self.take_from_run(message));
+        for (place, message) in messages.into_iter().enumerate() {
+            self.take_from_run(message);
+            if place % MOST_AT_ONCE == MOST_AT_ONCE - 1 {
+                self.carry_out();
+            }
+        }
+        self.carry_out();
         if waiting.lost > 0 {
             let text =
                 format!("{} messages were sent faster than the network could take them, and are lost", waiting.lost);
@@ -300,16 +308,15 @@ impl<F: Fleet> Member<F> {
                     topic: &topic,
                     is_state,
                     component: &component,
-                    to: to.as_deref(),
+                    to,
                     key: message.key(),
                     sent: u64::try_from(sent).unwrap_or(u64::MAX),
                     schema,
                     cause: message.header().cause.0,
-                    bytes: message.bytes().to_vec(),
+                    bytes: message.bytes(),
                 });
             }
         }
-        self.carry_out();
     }
 
     fn take_frame(&mut self, frame: &Frame, now: u64) {
@@ -373,17 +380,10 @@ impl<F: Fleet> Member<F> {
         }
         for action in self.exchange.take_actions() {
             match action {
-                Action::Put { to, bytes, envelope } => {
-                    let key = match to {
-                        Destination::Topic(topic, component) => key::topic(&topic, &component),
-                        Destination::Again(program, topic) => key::again(program, &topic),
-                        Destination::Alive(program) => key::alive(program),
-                        Destination::Ask(program) => key::ask(program),
-                        Destination::Covered(program) => key::covered(program),
-                    };
-                    if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
-                        self.unsent.push_back((key, bytes, envelope));
-                    }
+                Action::Put { to, bytes } => self.put_or_keep(&to, bytes, None),
+                Action::Send { to, frame } => {
+                    let (bytes, envelope) = frame.encode();
+                    self.put_or_keep(&to, bytes, Some(envelope));
                 }
                 Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
                 Action::Tell(news) => {
@@ -391,6 +391,19 @@ impl<F: Fleet> Member<F> {
                     self.fleet.tell(level, text);
                 }
             }
+        }
+    }
+
+    fn put_or_keep(&mut self, to: &Destination, bytes: Arc<[u8]>, envelope: Option<Arc<[u8]>>) {
+        let key = match to {
+            Destination::Topic(topic, component) => key::topic(topic, component),
+            Destination::Again(program, topic) => key::again(*program, topic),
+            Destination::Alive(program) => key::alive(*program),
+            Destination::Ask(program) => key::ask(*program),
+            Destination::Covered(program) => key::covered(*program),
+        };
+        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
+            self.unsent.push_back((key, bytes, envelope));
         }
     }
 

@@ -81,12 +81,14 @@ impl Port {
     }
 
     /// Leaves what the run has.
-    pub(crate) fn put(&self, from_run: FromRun) {
+    pub(crate) fn put(&self, all: impl Iterator<Item = FromRun>) {
         let mut waiting = self.lock();
-        if waiting.from_run.len() < MOST_MESSAGES {
-            waiting.from_run.push(from_run);
-        } else {
-            waiting.lost += 1;
+        for from_run in all {
+            if waiting.from_run.len() < MOST_MESSAGES {
+                waiting.from_run.push(from_run);
+            } else {
+                waiting.lost += 1;
+            }
         }
         self.wake(waiting);
     }

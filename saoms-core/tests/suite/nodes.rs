@@ -80,7 +80,7 @@ fn told(settings: Settings, others: &[&str]) -> String {
     let arrived = |component: &&str| FromNetwork {
         topic: Arc::from("WORDS"),
         arrived: Arrived {
-            component: (*component).to_owned(),
+            component: Arc::from(*component),
             to: String::new(),
             key: None,
             sent: 0,

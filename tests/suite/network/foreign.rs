@@ -8,7 +8,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use saoms_api::host::cdr;
-use saoms_core::network::exchange::wire::{Again, Alive, Covered, Envelope, Reads, Received, Sends, Welcome};
+use saoms_core::network::exchange::wire::{Again, Alive, Covered, Enclosed, Envelope, Reads, Received, Sends, Welcome};
 
 use super::programs::Programs;
 use super::{reader, senders};
@@ -70,8 +70,9 @@ fn alive() -> impl Strategy<Value = Vec<u8>> {
 fn numbered() -> impl Strategy<Value = Vec<u8>> {
     let topic = prop_oneof![Just("NUMBERS"), Just("PRESENT")];
     (0..40_u64, edge(), topic, bytes(), any::<bool>()).prop_map(|(program, number, topic, message, has_key)| {
-        let (component, to) = ("Stranger".to_owned(), String::new());
-        let envelope = Envelope { program, number, component, to, key: 3, has_key, sent: 0, schema: 0, cause: number };
+        let size = u32::try_from(message.len()).unwrap();
+        let messages = vec![Enclosed { size, to: String::new(), key: 3, has_key, sent: 0, cause: number }];
+        let envelope = Envelope { program, number, component: "Stranger".to_owned(), schema: 0, messages };
         frame(0, &format!("saoms/1/topic/{topic}/Stranger"), &message, &cdr::encode(&envelope))
     })
 }

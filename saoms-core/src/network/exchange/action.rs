@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::frame::Frame;
 use super::incoming::Arrived;
 
 /// Settings of a program on a network.
@@ -40,14 +41,19 @@ pub enum Destination {
 /// What the program has to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Put something on the network.
+    /// Put something on the network that the program says.
     Put {
         /// For whom.
         to: Destination,
-        /// The message.
+        /// What it says.
         bytes: Arc<[u8]>,
-        /// The [`Envelope`](super::wire::Envelope) of a message of a component.
-        envelope: Option<Arc<[u8]>>,
+    },
+    /// Put messages of a component on the network.
+    Send {
+        /// For whom.
+        to: Destination,
+        /// The messages.
+        frame: Frame,
     },
     /// Deliver a message to the readers of its topic.
     Deliver {
@@ -100,7 +106,7 @@ pub struct OwnMessage<'a> {
     /// The component: its path.
     pub component: &'a Arc<str>,
     /// The component that it is for; `None`: all readers.
-    pub to: Option<&'a str>,
+    pub to: Option<Arc<str>>,
     /// The key of a message of a state topic.
     pub key: Option<u64>,
     /// Wall clock, in nanoseconds since 1970.
@@ -110,5 +116,5 @@ pub struct OwnMessage<'a> {
     /// The record of the journal with the reason; 0 is none.
     pub cause: u64,
     /// The message.
-    pub bytes: Vec<u8>,
+    pub bytes: &'a [u8],
 }

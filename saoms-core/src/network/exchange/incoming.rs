@@ -1,6 +1,7 @@
 //! The messages of another program on one topic, on their way to the components of this one.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 use super::wire::Covered;
 
@@ -8,7 +9,7 @@ use super::wire::Covered;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Arrived {
     /// The component that sent it: its path.
-    pub component: String,
+    pub component: Arc<str>,
     /// The component that it is for; empty: all readers of the topic.
     pub to: String,
     /// The key, of a message of a state topic.
@@ -36,7 +37,7 @@ pub(super) struct Incoming {
     /// Of a state topic, messages that are outdated: the number of the first of each stretch, with that of the last.
     outdated: BTreeMap<u64, u64>,
     /// Of a state topic, the number of the newest message of each component and key.
-    newest: HashMap<(String, Option<u64>), u64>,
+    newest: HashMap<(Arc<str>, Option<u64>), u64>,
     /// Time at which missing messages are asked for (again).
     pub(super) ask_at: Option<u64>,
     /// Number of times that they were asked for without an answer.
@@ -48,14 +49,19 @@ pub(super) struct Incoming {
 }
 
 impl Incoming {
-    /// Takes a message of an event topic. Gives what can be delivered now, in order.
-    pub(super) fn take_event(&mut self, number: u64, arrived: Arrived) -> Vec<Arrived> {
+    /// Takes a message of an event topic. Adds what can be delivered now to `ready`, in order.
+    pub(super) fn take_event(&mut self, number: u64, arrived: Arrived, ready: &mut Vec<Arrived>) {
         self.last = self.last.max(number);
+        if number == self.next && number != 0 && self.waiting.is_empty() {
+            self.next += 1;
+            ready.push(arrived);
+            return;
+        }
         if self.next != 0 && number < self.next || self.waiting.len() >= MOST_WAITING && number != self.next {
-            return Vec::new();
+            return;
         }
         self.waiting.insert(number, Some(arrived));
-        self.advance()
+        ready.extend(self.advance());
     }
 
     /// Takes a message of a state topic, which waits for no other. Gives it unless a newer one of its component and key
@@ -66,7 +72,7 @@ impl Incoming {
             self.waiting.insert(number, None);
             self.advance();
         }
-        let newest = self.newest.entry((arrived.component.clone(), arrived.key)).or_default();
+        let newest = self.newest.entry((Arc::clone(&arrived.component), arrived.key)).or_default();
         (number > *newest).then(|| {
             *newest = number;
             arrived

@@ -11,6 +11,7 @@
 //!   both ends say so.
 
 mod action;
+mod frame;
 mod hear;
 mod incoming;
 mod outgoing;
@@ -25,12 +26,13 @@ use std::sync::Arc;
 use saoms_api::host::cdr;
 
 pub use self::action::{Action, Destination, News, OwnMessage, Settings};
+use self::frame::ArrivedFrame;
+pub use self::frame::Frame;
 pub use self::incoming::Arrived;
 use self::incoming::Incoming;
-pub use self::outgoing::Sent;
-use self::outgoing::{Kept, Outgoing};
+use self::outgoing::{Kept, Outgoing, Sent};
 use self::peer::Peer;
-use self::wire::{Again, Alive, Covered, Envelope, LARGEST_NUMBER, Vote};
+use self::wire::{Again, Alive, Covered, Vote};
 
 /// Nanoseconds of a millisecond.
 const MILLISECOND: u64 = 1_000_000;
@@ -117,6 +119,7 @@ impl Exchange {
 
     /// What the program has to do, in this order.
     pub fn take_actions(&mut self) -> Vec<Action> {
+        self.keep_within_limit();
         std::mem::take(&mut self.actions)
     }
 
@@ -136,51 +139,52 @@ impl Exchange {
             self.say_soon();
         }
         let Some(outgoing) = self.outgoing.get_mut(topic) else { return };
-        let number = outgoing.last + 1;
-        let envelope = Envelope {
-            program: self.settings.program,
-            number,
-            component: component.to_string(),
-            to: to.unwrap_or_default().to_owned(),
-            key: key.unwrap_or_default(),
-            has_key: key.is_some(),
-            sent,
-            schema,
-            cause,
-        };
-        let (bytes, envelope) = (Arc::<[u8]>::from(bytes), Arc::<[u8]>::from(cdr::encode(&envelope)));
-        let to = Destination::Topic(Arc::clone(topic), Arc::clone(component));
-        self.actions.push(Action::Put { to, bytes: Arc::clone(&bytes), envelope: Some(Arc::clone(&envelope)) });
-        outgoing.keep(Sent { number, bytes, envelope }, (Arc::clone(component), key));
-        if !is_state && self.peers.values().all(|peer| peer.needs(topic).is_none()) {
-            outgoing.forget_before(number + 1);
+        let (component, bytes) = (Arc::clone(component), bytes.into());
+        let sent = Sent { number: outgoing.last + 1, component, to, key, sent, schema, cause, bytes };
+        if is_state || self.peers.values().any(|peer| peer.needs(topic).is_some()) {
+            outgoing.keep(sent.clone());
+        } else {
+            outgoing.last = sent.number;
         }
+        let to = Destination::Topic(Arc::clone(topic), Arc::clone(&sent.component));
+        self.put_message(to, is_state, sent);
         self.has_news = true;
-        self.keep_within_limit();
     }
 
-    /// A message of a component of another program arrived.
+    /// Puts a message on the network: with the one before, if both are events of one component.
+    fn put_message(&mut self, to: Destination, is_state: bool, sent: Sent) {
+        let last = self.actions.last_mut().filter(|_| !is_state);
+        let sent = match last {
+            Some(Action::Send { to: before, frame }) if *before == to => match frame.add(sent) {
+                Ok(()) => return,
+                Err(sent) => sent,
+            },
+            _ => sent,
+        };
+        let frame = Frame::new(self.settings.program, sent);
+        self.actions.push(Action::Send { to, frame });
+    }
+
+    /// Messages of a component of another program arrived, with their envelope.
     pub fn receive(&mut self, topic: &str, bytes: &[u8], envelope: &[u8], now: u64) {
-        let Ok(envelope) = cdr::decode::<Envelope>(envelope) else { return };
         let Some((topic, own)) = self.reads.get_key_value(topic) else { return };
         let (topic, own) = (Arc::clone(topic), *own);
+        let Some(ArrivedFrame { program, schema, messages }) = ArrivedFrame::decode(bytes, envelope) else { return };
         self.pass(now);
         // One that was never heard is heard soon, and its messages are sent again.
-        let Some(peer) = self.peers.get_mut(&envelope.program) else { return };
-        let Envelope { program, number, component, to, key, has_key, sent, schema, cause } = envelope;
-        if number > LARGEST_NUMBER {
-            return;
-        }
-        let arrived = Arrived { component, to, key: has_key.then_some(key), sent, cause, bytes: bytes.to_owned() };
+        let Some(peer) = self.peers.get_mut(&program) else { return };
         let incoming = peer.incoming.entry(Arc::clone(&topic)).or_default();
         if schema != own.schema && peer.differing.insert(Arc::clone(&topic)) {
             let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
             self.actions.push(Action::Tell(News::Differs { program, name, topic }));
         }
-        let ready = match own.is_state {
-            true => incoming.take_state(number, arrived).into_iter().collect(),
-            false => incoming.take_event(number, arrived),
-        };
+        let mut ready = Vec::with_capacity(messages.len());
+        for (number, arrived) in messages {
+            match own.is_state {
+                true => ready.extend(incoming.take_state(number, arrived)),
+                false => incoming.take_event(number, arrived, &mut ready),
+            }
+        }
         note_missing(incoming, now);
         self.has_news = true;
         self.deliver(program, &topic, ready);
@@ -189,24 +193,26 @@ impl Exchange {
     /// Another program asks for messages again.
     pub fn answer(&mut self, again: &Again) {
         let Some((topic, outgoing)) = self.outgoing.get_key_value(again.topic.as_str()) else { return };
+        let (topic, is_state, newest) = (Arc::clone(topic), outgoing.is_state(), outgoing.last);
         let (mut size, mut last) = (0, again.last);
-        let mut numbers = Vec::new();
+        let mut found = Vec::new();
         for sent in outgoing.between(again.first, again.last) {
-            if numbers.len() == MOST_AGAIN || size > MOST_AGAIN_BYTES {
+            if found.len() == MOST_AGAIN || size > MOST_AGAIN_BYTES {
                 last = sent.number - 1;
                 break;
             }
-            numbers.push(sent.number);
-            size += sent.bytes.len() + sent.envelope.len();
-            let to = Destination::Again(again.reader, Arc::clone(topic));
-            let (bytes, envelope) = (Arc::clone(&sent.bytes), Some(Arc::clone(&sent.envelope)));
-            self.actions.push(Action::Put { to, bytes, envelope });
+            size += sent.bytes.len();
+            found.push(sent.clone());
         }
-        if outgoing.is_state() {
-            let (program, last) = (self.settings.program, last.min(outgoing.last));
+        let numbers = found.iter().map(|sent| sent.number).collect();
+        for sent in found {
+            self.put_message(Destination::Again(again.reader, Arc::clone(&topic)), is_state, sent);
+        }
+        if is_state {
+            let (program, last) = (self.settings.program, last.min(newest));
             let covered = Covered { program, topic: topic.to_string(), first: again.first, last, numbers };
             let to = Destination::Covered(again.reader);
-            self.actions.push(Action::Put { to, bytes: cdr::encode(&covered).into(), envelope: None });
+            self.actions.push(Action::Put { to, bytes: cdr::encode(&covered).into() });
         }
     }
 
@@ -403,7 +409,7 @@ impl Exchange {
                 incoming.asked_up_to = last;
                 let again = Again { reader: self.settings.program, topic: topic.to_string(), first, last };
                 let (to, bytes) = (Destination::Ask(*program), cdr::encode(&again).into());
-                self.actions.push(Action::Put { to, bytes, envelope: None });
+                self.actions.push(Action::Put { to, bytes });
                 let wait = ((2 * LATENESS) << incoming.asked.min(10)).min(LONGEST_WAIT);
                 incoming.asked += 1;
                 incoming.ask_at = Some(now + wait);
@@ -415,7 +421,7 @@ impl Exchange {
 
     fn put_alive(&mut self, alive: &Alive) {
         let bytes = cdr::encode(alive).into();
-        self.actions.push(Action::Put { to: Destination::Alive(self.settings.program), bytes, envelope: None });
+        self.actions.push(Action::Put { to: Destination::Alive(self.settings.program), bytes });
     }
 
     /// Forgets events that all readers have received.

@@ -3,21 +3,26 @@
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::Arc;
 
-/// A message that was sent, in its byte forms.
+/// A message that was sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sent {
+pub(super) struct Sent {
     /// Its number on its topic.
-    pub number: u64,
-    /// The message.
-    pub bytes: Arc<[u8]>,
-    /// The [`Envelope`](super::wire::Envelope).
-    pub envelope: Arc<[u8]>,
+    pub(super) number: u64,
+    pub(super) component: Arc<str>,
+    /// The component that it is for; `None`: all readers.
+    pub(super) to: Option<Arc<str>>,
+    pub(super) key: Option<u64>,
+    /// Wall clock of its sending, in nanoseconds since 1970.
+    pub(super) sent: u64,
+    pub(super) schema: u64,
+    pub(super) cause: u64,
+    pub(super) bytes: Arc<[u8]>,
 }
 
 impl Sent {
     fn size(&self) -> usize {
-        // The numbers and the memory around them count, too: small messages are the usual ones.
-        self.bytes.len() + self.envelope.len() + 96
+        // What stands around its bytes counts, too: small messages are the usual ones.
+        self.bytes.len() + size_of::<Sent>() + 64
     }
 }
 
@@ -57,12 +62,13 @@ impl Outgoing {
     }
 
     /// Keeps a message, whose number is the next one.
-    pub(super) fn keep(&mut self, sent: Sent, key: StateKey) {
+    pub(super) fn keep(&mut self, sent: Sent) {
         self.last = sent.number;
         self.size += sent.size();
         match &mut self.kept {
             Kept::Events(events) => events.push_back(sent),
             Kept::States { newest, numbers } => {
+                let key = (Arc::clone(&sent.component), sent.key);
                 if let Some(before) = numbers.insert(key, sent.number).and_then(|number| newest.remove(&number)) {
                     self.size -= before.size();
                 }

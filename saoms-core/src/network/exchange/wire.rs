@@ -5,16 +5,29 @@ use saoms_api::Message;
 /// The largest number that a program says.
 pub const LARGEST_NUMBER: u64 = 1 << 62;
 
-/// What is said beside each message.
+/// What is said beside a message, or beside several events that a component sent one after the other: their bytes stand
+/// one behind the other then.
 #[derive(Clone, Debug, PartialEq, Eq, Message)]
 #[message(name = "saoms_msgs/msg/Envelope")]
 pub struct Envelope {
-    /// The program that sends it.
+    /// The program that sends them.
     pub program: u64,
-    /// The number of the message among those of the program on its topic, from 1.
-    pub number: u64,
-    /// The component that sends it: its path.
+    /// The component that sends them: its path.
     pub component: String,
+    /// The hash of the schema of the messages.
+    pub schema: u64,
+    /// The number of the first message among those of the program on its topic, from 1. The others follow it.
+    pub number: u64,
+    /// The messages.
+    pub messages: Vec<Enclosed>,
+}
+
+/// What an [`Envelope`] says of one message.
+#[derive(Clone, Debug, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Enclosed")]
+pub struct Enclosed {
+    /// Number of its bytes.
+    pub size: u32,
     /// The component that it is for; empty: all readers of the topic.
     pub to: String,
     /// The key of a message of a state topic that has one.
@@ -23,8 +36,6 @@ pub struct Envelope {
     pub has_key: bool,
     /// Wall clock of its sending, in nanoseconds since 1970.
     pub sent: u64,
-    /// The hash of the schema of the message.
-    pub schema: u64,
     /// The record of the sender's journal with the reason; 0 is none.
     pub cause: u64,
 }

@@ -59,9 +59,11 @@ impl Networks {
     /// Leaves what waits for the threads of the networks.
     #[cold]
     pub(super) fn leave(&mut self) {
-        for (network, from_run) in self.waiting.drain(..) {
+        let mut waiting = self.waiting.drain(..).peekable();
+        while let Some((network, first)) = waiting.next() {
+            let others = std::iter::from_fn(|| waiting.next_if(|(other, _)| *other == network));
             if let Some((_, port)) = self.all.get(usize::from(network)) {
-                port.put(from_run);
+                port.put(std::iter::once(first).chain(others.map(|(_, from_run)| from_run)));
             }
         }
     }
@@ -184,7 +186,7 @@ impl Fleet for NetworkedFleet {
             let message = SharedMessage::from_bytes(header, None, arrived.bytes).of(key, place).only_to(to.flatten());
             engine.standstill.note_effect(now);
             if let Some(observers) = engine.bus.observers(topic).cloned() {
-                let (topic, component) = (Arc::clone(engine.bus.name(topic)), Arc::from(arrived.component));
+                let (topic, component) = (Arc::clone(engine.bus.name(topic)), arrived.component);
                 let sent = SentMessage { topic, component, message: message.clone(), is_of_other: true };
                 engine.notifications.push(Notification::Sent(sent, observers));
             }

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use saoms_api::host::cdr;
 
 use super::lossy::MILLISECOND;
-use crate::network::exchange::wire::{Again, Alive, Covered, Envelope, Reads, Received, Sends, Welcome};
+use crate::network::exchange::wire::{Again, Alive, Covered, Enclosed, Envelope, Reads, Received, Sends, Welcome};
 use crate::network::exchange::{Exchange, OwnMessage, Settings};
 
 /// Numbers at the edges of what there is.
@@ -47,13 +47,13 @@ fn said() -> impl Strategy<Value = Said> {
                 leaves: leaves && number[8] > 2,
             })
         });
-    let message = (0..4_u64, edge(), topic(), any::<bool>()).prop_map(|(program, number, topic, has_key)| {
-        let (component, to) = ("Stranger".to_owned(), String::new());
-        Said::Message(
-            topic,
-            Envelope { program, number, component, to, key: 1, has_key, sent: 0, schema: number % 2, cause: 0 },
-        )
-    });
+    let sizes = prop_oneof![Just(vec![7]), prop::collection::vec(0..8_u32, 0..5), Just(vec![u32::MAX, 8])];
+    let message =
+        (0..4_u64, edge(), topic(), any::<bool>(), sizes).prop_map(|(program, number, topic, has_key, sizes)| {
+            let enclosed = |size| Enclosed { size, to: String::new(), key: 1, has_key, sent: 0, cause: 0 };
+            let (component, messages) = ("Stranger".to_owned(), sizes.into_iter().map(enclosed).collect());
+            Said::Message(topic, Envelope { program, number, component, schema: number % 2, messages })
+        });
     let again = (numbers(), topic()).prop_map(|(number, topic)| Again {
         reader: 1,
         topic: topic.to_owned(),
@@ -103,7 +103,7 @@ proptest! {
                     sent: 0,
                     schema: 0,
                     cause: 0,
-                    bytes: vec![0; 1_000],
+                    bytes: &[0; 1_000],
                 }),
                 Said::Tick(milliseconds) => {
                     now += milliseconds * MILLISECOND;

@@ -147,7 +147,7 @@ impl Lossy {
             sent: self.now,
             schema: 0,
             cause: 0,
-            bytes: number.to_le_bytes().to_vec(),
+            bytes: &number.to_le_bytes(),
         });
         self.carry_out(program);
         number
@@ -190,17 +190,10 @@ impl Lossy {
     fn carry_out(&mut self, program: usize) {
         for action in self.programs[program].exchange.take_actions() {
             match action {
-                Action::Put { to, bytes, envelope } => {
-                    let repeats = self.random(100) < u64::from(self.weather.repeats);
-                    for _ in 0..1 + u64::from(repeats) {
-                        if self.is_cut || self.random(100) < u64::from(self.weather.loss) {
-                            continue;
-                        }
-                        let at = self.now + self.random(self.weather.jitter + 1) * MILLISECOND;
-                        self.count += 1;
-                        let packet = (program, to.clone(), Arc::clone(&bytes), envelope.clone());
-                        self.flying.insert((at, self.count), packet);
-                    }
+                Action::Put { to, bytes } => self.carry((program, to, bytes, None)),
+                Action::Send { to, frame } => {
+                    let (bytes, envelope) = frame.encode();
+                    self.carry((program, to, bytes, Some(envelope)));
                 }
                 Action::Deliver { program: sender, topic, arrived } => {
                     let number = u64::from_le_bytes(arrived.bytes.try_into().unwrap());
@@ -224,6 +217,18 @@ impl Lossy {
                     self.programs[program].told.push(line);
                 }
             }
+        }
+    }
+
+    fn carry(&mut self, packet: Packet) {
+        let repeats = self.random(100) < u64::from(self.weather.repeats);
+        for _ in 0..1 + u64::from(repeats) {
+            if self.is_cut || self.random(100) < u64::from(self.weather.loss) {
+                continue;
+            }
+            let at = self.now + self.random(self.weather.jitter + 1) * MILLISECOND;
+            self.count += 1;
+            self.flying.insert((at, self.count), packet.clone());
         }
     }
 
