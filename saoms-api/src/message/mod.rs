@@ -140,6 +140,17 @@ pub struct Header {
     pub cause: Cause,
 }
 
+/// The index of the first sender of another program. Those of this one have indices from 0.
+pub const FIRST_ELSEWHERE: u32 = 1 << 31;
+
+impl Header {
+    /// True if the sender is a component of another program.
+    pub const fn is_from_elsewhere(&self) -> bool {
+        // The greatest index is that of events from outside.
+        self.sender >= FIRST_ELSEWHERE && self.sender != u32::MAX
+    }
+}
+
 /// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build
 /// of the program.
 #[derive(Clone)]

@@ -79,7 +79,7 @@ impl Pieces {
 
     /// A master that assigns luggage requests it from one robot.
     pub(super) fn hear_assignment(&mut self, message: &SharedMessage, at: Time) {
-        if let Some(assignment) = message.get::<Assignment>() {
+        if let Some(assignment) = message.get::<Assignment>().filter(|assignment| assignment.lease == 0) {
             self.request(assignment.luggage, at);
         }
     }

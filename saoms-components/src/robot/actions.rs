@@ -40,7 +40,7 @@ impl Outcome {
 impl RobotKnowledge {
     /// Starts an action; if it is done at once, updates the robot's knowledge.
     pub(crate) fn begin(&mut self, context: &mut Context<'_>, action: Action) -> Result<Outcome, Failure> {
-        if self.stopped || self.waits_for_grant(action) {
+        if self.stopped || self.waits_for_grant(action) || self.waits_for_master(action) {
             return Ok(Outcome::NotBegun);
         }
         if action.kind != ActionKind::Move {
@@ -227,7 +227,7 @@ impl RobotKnowledge {
         let variables = &mut self.variables;
         (variables.busy, variables.transporter, variables.has_luggage) = (false, false, false);
         variables.healer = false;
-        self.job = None;
+        (self.job, self.lease) = (None, None);
         self.stops.clear();
         if self.is_assigned {
             self.lingers = LINGERING;

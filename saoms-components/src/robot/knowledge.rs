@@ -4,11 +4,12 @@ use saoms_api::{Cause, Entries, Extras, Field, Knowledge, Publisher, Time};
 
 use crate::grid::Block;
 use crate::hardware::Action;
-use crate::messages::{Collision, LuggageStage};
+use crate::messages::{Collision, Lease, LuggageStage};
 use crate::validation::MessageValidator;
 
 use super::actions::Outcome;
 use super::hardware_client::HardwareClient;
+use super::job::lease::Leased;
 use super::safe::{Energy, Leg, RESERVE, Traffic};
 use super::strain::Strain;
 use super::tally::Tally;
@@ -158,6 +159,9 @@ pub struct RobotKnowledge {
     pub(super) said_homeward: bool,
     /// State of the energy management.
     pub(super) energy: Energy,
+    /// The luggage of its job, if it has that on a lease; and where it says so.
+    pub(super) lease: Option<Box<Leased>>,
+    pub(super) leases: Publisher<Lease>,
     /// The robots around it.
     pub(super) traffic: Traffic,
     /// Its passage through zones, where its site has zones.
@@ -226,6 +230,8 @@ impl RobotKnowledge {
             loaded: false,
             said_homeward: false,
             energy: Energy::default(),
+            lease: None,
+            leases: Publisher::default(),
             traffic: Traffic::default(),
             zones: None,
             leg: Leg::default(),

@@ -33,12 +33,14 @@ use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, S
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
 use crate::messages::{
-    ASSIGNMENT, COLLISION, DRAIN, Drain, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, OUTAGE, Outage, POSITION,
+    ASSIGNMENT, COLLISION, DRAIN, Drain, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, LEASE, OUTAGE, Outage, POSITION,
     PRESENCE, ROBOT_LIST, TERRITORY, VISIT,
 };
 
 pub use battery::{Battery, Consumption};
 pub use job::Job;
+#[cfg(test)]
+pub(crate) use job::lease::Leased;
 pub use knowledge::{JobEnd, Orders, RobotKnowledge, Trouble, Variables};
 pub use lists::{Assigned, Help, Helps, Lists, Peers, Request, Requests, Rival, WaitingLuggage};
 pub use properties::{Policy, RobotProperties};
@@ -85,7 +87,7 @@ const ASSISTANCE: &str = "assistance";
             classic::ClassicPathFollower
         )
     ),
-    publishes(COLLISION, GRANT_REQUEST, PRESENCE),
+    publishes(COLLISION, GRANT_REQUEST, PRESENCE, LEASE),
     subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT, TERRITORY, GRANT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
@@ -144,6 +146,7 @@ impl Component for Robot {
         self.knowledge.collisions = context.publish(&COLLISION)?;
         self.topics = Topics::subscribe(context)?;
         if self.knowledge.policy == Policy::Safe {
+            self.knowledge.leases = context.publish(&LEASE)?;
             self.knowledge.zones = ZoneClient::new(context)?.map(Box::new);
         }
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
@@ -202,6 +205,7 @@ impl Component for Robot {
             self.knowledge.end_execution(was_critical, context)?;
             self.knowledge.ask_zones(context)?;
             self.knowledge.repeat_state(context)?;
+            self.knowledge.renew_lease(context)?;
             self.knowledge.note_waiting();
             // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
             if in_charge || !self.knowledge.variables.in_charge {

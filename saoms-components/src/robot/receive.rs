@@ -238,7 +238,10 @@ impl RobotKnowledge {
     fn hear_assignments(&mut self, assignments: Subscription<Assignment>, context: &mut Context<'_>) {
         for (header, assignment) in context.receive(&assignments).with_headers() {
             if assignment.robot == self.number && self.accepts(assignment, header, context) {
-                self.lists.requests.hear_assignment(assignment, header.cause);
+                match assignment.lease {
+                    0 => self.lists.requests.hear_assignment(assignment, header.is_from_elsewhere(), header.cause),
+                    _ => self.hear_lease(assignment, header.cause),
+                }
             }
         }
     }

@@ -5,6 +5,7 @@ mod broken;
 mod certificates;
 mod errors;
 mod foreign;
+mod leases;
 mod lines;
 mod nodes;
 mod passwords;

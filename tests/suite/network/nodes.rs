@@ -9,7 +9,7 @@ use super::programs::{Program, Programs, component, free_port};
 use crate::support::{root, saoms, stdout, text};
 
 /// Starts a node of a composite.
-fn start(programs: &Programs, composite: &str, node: &str, more: &[&str]) -> Arc<Program> {
+pub(super) fn start(programs: &Programs, composite: &str, node: &str, more: &[&str]) -> Arc<Program> {
     let report = format!("{node}.json");
     let arguments = ["run", composite, "--node", node, "--report", &report];
     programs.run(node, &[&arguments, more].concat())
@@ -77,7 +77,7 @@ fn the_airport_runs_in_programs_by_its_nodes() {
 
 /// Writes a fleet with a broker, a scenario and a master in `control`, a zone in `traffic`, and robots: each with its
 /// node and its period.
-fn write_fleet(programs: &Programs, scenario: &str, robots: &[(&str, &str)]) {
+pub(super) fn write_fleet(programs: &Programs, scenario: &str, robots: &[(&str, &str)]) {
     let url = programs.url(programs.port);
     let task = |name: &str, class: &str, period: &str, more: &[(&str, &str)]| {
         let usual = [("ID", name), ("period", period), ("url", &url)];

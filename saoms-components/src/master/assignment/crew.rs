@@ -61,6 +61,8 @@ pub struct Member {
     engaged: bool,
     /// True if it is out of earshot, with a job.
     away: bool,
+    /// True if it was not heard for the time of a lease, until it is heard again.
+    lapsed: bool,
 }
 
 /// The robots that bring luggage, by number. As an entry it is a list of [`Member`].
@@ -84,6 +86,13 @@ pub struct Crew {
     step: Option<Duration>,
     /// True if something changed that makes other assignments possible.
     pub(in crate::master) changed: bool,
+}
+
+impl Member {
+    /// The period of the robot, in microseconds.
+    pub(super) fn period(&self) -> u64 {
+        self.period
+    }
 }
 
 impl Field for Crew {
@@ -156,7 +165,7 @@ impl Crew {
         }
         (member.charger, member.battery, member.asleep, member.period) =
             (said.charger, said.battery, said.asleep, said.period);
-        member.away = false;
+        (member.away, member.lapsed) = (false, false);
         self.slowest = self.slowest.max(said.period);
         self.sort(said.robot);
     }
@@ -191,7 +200,7 @@ impl Crew {
         self.unanswered.retain(|(robot, luggage, _)| (*robot, *luggage) != (said.robot, said.luggage));
         let Some(member) = self.members.get_mut(&said.robot) else { return };
         let luggage = Some(said.luggage);
-        (member.block, member.engaged) = (said.block, false);
+        (member.block, member.engaged, member.lapsed) = (said.block, false, false);
         match said.stage {
             LuggageStage::Taken => {
                 (member.job, member.asked, member.collected) = (luggage, None, false);
@@ -289,6 +298,24 @@ impl Crew {
         member.collected |= from == Some(said.block);
     }
 
+    /// A robot says that it has luggage on a lease.
+    pub(super) fn hear_lease(&mut self, robot: u32) {
+        if let Some(member) = self.members.get_mut(&robot).filter(|member| member.lapsed) {
+            (member.lapsed, self.changed) = (false, true);
+            self.sort(robot);
+        }
+    }
+
+    /// A robot was not heard for the time of the lease of this luggage, which is for others now.
+    pub(super) fn lapse(&mut self, robot: u32, luggage: u32) {
+        if let Some(member) = self.members.get_mut(&robot) {
+            (member.lapsed, self.changed) = (true, true);
+            member.job.take_if(|job| *job == luggage);
+            member.withdrawn.take_if(|withdrawn| *withdrawn == luggage);
+            self.sort(robot);
+        }
+    }
+
     /// Luggage is assigned to a robot.
     pub(in crate::master) fn ask(&mut self, robot: u32, luggage: u32, now: Time) {
         let answer = self.slowest().saturating_mul(ANSWER).max(self.answers_take.saturating_mul(2));
@@ -332,7 +359,7 @@ impl Crew {
         }
         let (is_free, is_asked) = self.members.get(&robot).map_or((false, false), |member| {
             let has_job = member.job.is_some() || member.asked.is_some();
-            (!(member.asleep || has_job || member.engaged || member.away), member.asked.is_some())
+            (!(member.asleep || has_job || member.engaged || member.away || member.lapsed), member.asked.is_some())
         });
         let note = |set: &mut BTreeSet<u32>, is_in: bool| {
             if is_in {

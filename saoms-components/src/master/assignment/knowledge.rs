@@ -1,5 +1,7 @@
 //! Knowledge of the master of the environment, which its loops share.
 
+use std::time::Duration;
+
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use saoms_api::host::declaration::ConstText;
 use saoms_api::{Context, Extras, Failure, Field, Header, Knowledge, Subscription, Time};
@@ -9,9 +11,9 @@ use super::crew::Crew;
 use super::matching::Candidate;
 use crate::grid::Block;
 use crate::master::event_filter::EventFilter;
-use crate::master::open_luggage::{OpenLuggage, WaitingPiece};
+use crate::master::open_luggage::{Lapsed, OpenLuggage, WaitingPiece};
 use crate::master::part::{Early, Part};
-use crate::messages::{Assignment, EventLuggage, Fault, LuggageStage, Position, RobotList};
+use crate::messages::{Assignment, EventLuggage, Fault, Lease, LuggageStage, Position, RobotList};
 use crate::robot::{HEARD, Job};
 use crate::validation::{MessageValidator, Validate};
 
@@ -123,10 +125,11 @@ impl MasterEnvironmentKnowledge {
         self.open.hear_response(said);
     }
 
-    /// Two robots want to bring the same luggage: the one that took it later, or that has not taken it yet, gives it
-    /// back.
+    /// Two robots want to bring the same luggage: the one that took it later, or that has not taken it yet, or may not
+    /// collect it yet, gives it back.
     fn withdraw_from_one(&mut self, said: &EventLuggage, bearer: u32) {
-        let has_taken = self.crew.get(bearer).is_some_and(|member| member.job == Some(said.luggage));
+        let has_taken = self.crew.get(bearer).is_some_and(|member| member.job == Some(said.luggage))
+            && !self.open.may_leave(said.luggage, bearer);
         let other = if has_taken { said.robot } else { bearer };
         if !has_taken {
             self.open.hear_response(said);
@@ -177,7 +180,7 @@ impl MasterEnvironmentKnowledge {
     pub(super) fn assign(&mut self, robot: u32, luggage: u32, (from, to): (Block, Block), withdrawn: bool) {
         let Some(member) = self.crew.get(robot) else { return };
         let charger = member.charger;
-        self.assignments.push(Assignment { robot, luggage, withdrawn, from, to, charger });
+        self.assignments.push(Assignment { robot, luggage, withdrawn, from, to, charger, lease: 0 });
     }
 
     /// Notes what is sent to robots.
@@ -196,6 +199,34 @@ impl MasterEnvironmentKnowledge {
             self.open.hand_back(luggage, robot);
             self.crew.changed = true;
         }
+    }
+
+    /// Handles what a robot of another program has on a lease. Gives the answer, if it gets one. Masters of zones do not
+    /// answer for luggage of others.
+    pub(in crate::master) fn hear_lease(&mut self, lease: &Lease, now: Time) -> Option<Assignment> {
+        self.crew.hear_lease(lease.robot);
+        if self.part.is_some() && self.open.job(lease.luggage).is_none() {
+            return None;
+        }
+        let duration = Lease::duration(self.crew.get(lease.robot)?.period());
+        let may = self.open.hear_lease(lease, duration, now)?;
+        self.answer(lease.robot, lease.luggage, lease.number, may)
+    }
+
+    fn answer(&self, robot: u32, luggage: u32, lease: u64, may: bool) -> Option<Assignment> {
+        let charger = self.crew.get(robot)?.charger;
+        Some(Assignment { robot, luggage, withdrawn: !may, charger, lease, ..Assignment::default() })
+    }
+
+    /// Luggage on leases that are over waits again. Gives it, with what its robots are told.
+    pub(in crate::master) fn take_lapsed(&mut self, now: Time, held_up: Duration) -> Vec<(Lapsed, Option<Assignment>)> {
+        let lapsed = self.open.take_lapsed(now, held_up);
+        let told = lapsed.into_iter().map(|lapsed| {
+            self.crew.lapse(lapsed.robot, lapsed.request.luggage);
+            let told = self.answer(lapsed.robot, lapsed.request.luggage, lapsed.number, false);
+            (lapsed, told)
+        });
+        told.collect()
     }
 
     /// A robot is off the floor, or its component failed.

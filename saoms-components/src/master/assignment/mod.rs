@@ -6,6 +6,8 @@
 
 mod crew;
 mod knowledge;
+#[cfg(test)]
+mod lease_tests;
 mod matching;
 mod methods;
 mod records;

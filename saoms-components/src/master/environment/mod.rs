@@ -1,10 +1,11 @@
+mod leases;
 mod requests;
 
 use std::collections::VecDeque;
 
 use saoms_api::{
     Cause, Class, Component, Context, Failure, Header, Loops, Message, Properties, Publisher, ReportValue, Saved,
-    SavedLoops, Subscription, Work, info, record,
+    SavedLoops, Subscription, Time, Work, info, record,
 };
 
 use super::assignment::{AssignmentPolicy, Crew, MasterAssignment, MasterEnvironmentKnowledge};
@@ -16,8 +17,8 @@ use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
     AREA, ASSIGNMENT, Assignment, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT,
-    EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LuggageStage, POSITION,
-    Position, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, TERRITORY, VISIT, Visit, is_visit,
+    EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LEASE, Lease, LuggageStage,
+    POSITION, Position, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, TERRITORY, VISIT, Visit, is_visit,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
@@ -84,6 +85,10 @@ pub struct MasterEnvironment {
     #[publishes(REMOVAL_ASKED)]
     removals_asked: Publisher<Fault>,
     unanswered: Unanswered,
+    #[subscribes(LEASE)]
+    leases: Subscription<Lease>,
+    /// Time of the last execution.
+    executed_at: Option<Time>,
     #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
     #[publishes(CRITICAL_SITUATION)]
@@ -129,6 +134,8 @@ impl Component for MasterEnvironment {
             removals: Subscription::default(),
             removals_asked: Publisher::default(),
             unanswered: Unanswered::default(),
+            leases: Subscription::default(),
+            executed_at: None,
             luggage: Publisher::default(),
             situations: Publisher::default(),
             exceptional: Publisher::default(),
@@ -218,6 +225,7 @@ impl Component for MasterEnvironment {
                 self.knowledge.open.hear_removal(removal);
             }
         }
+        self.hear_leases(context)?;
         self.open_again(context)?;
         for fault in self.unanswered.due(&self.knowledge, context) {
             context.send(&self.removals_asked, fault)?;

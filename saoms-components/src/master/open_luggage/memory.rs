@@ -117,6 +117,8 @@ impl OpenLuggage {
                 discussed,
                 contenders,
                 unheard,
+                // Robots say it again; what one may have collected does not pass on.
+                lease: None,
             };
             (luggage, piece)
         };

@@ -1,3 +1,4 @@
+mod leases;
 mod memory;
 mod outages;
 #[cfg(test)]
@@ -15,6 +16,8 @@ use crate::messages::{
 };
 use crate::robot::Job;
 
+pub(super) use leases::Lapsed;
+use leases::PieceLease;
 pub(super) use memory::OpenMemory;
 use outages::Failed;
 
@@ -72,6 +75,8 @@ struct Piece {
     contenders: BTreeSet<u32>,
     /// True if one of these gave it back: robots that heard that it was taken do not know that it may wait since.
     unheard: bool,
+    /// The last lease of a robot of another program.
+    lease: Option<PieceLease>,
 }
 
 impl Piece {

@@ -99,6 +99,8 @@ pub struct Requests {
     assigned: Vec<Assigned>,
     /// When luggage was requested last that nobody took since. That somebody took it before may be heard later.
     requested: BTreeMap<u32, Time>,
+    /// Luggage that is not settled and was announced from another program.
+    of_elsewhere: BTreeSet<u32>,
 }
 
 /// Greatest number of assignments that wait for an answer: a robot without a loop that answers keeps the newest.
@@ -127,6 +129,7 @@ pub(in crate::robot) struct RequestsMemory {
     delivered: Numbers,
     assigned: Vec<Assigned>,
     requested: Vec<Requested>,
+    of_elsewhere: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -160,6 +163,7 @@ impl Requests {
             delivered: self.delivered.clone(),
             assigned: self.assigned.clone(),
             requested: self.requested.iter().map(|(&luggage, &at)| Requested { luggage, at }).collect(),
+            of_elsewhere: self.of_elsewhere.iter().copied().collect(),
         }
     }
 
@@ -169,6 +173,7 @@ impl Requests {
         self.visits = memory.visits.into_iter().map(|visit| (visit.visit, visit)).collect();
         (self.settled, self.delivered, self.assigned) = (memory.settled, memory.delivered, memory.assigned);
         self.requested = memory.requested.iter().map(|requested| (requested.luggage, requested.at)).collect();
+        self.of_elsewhere = memory.of_elsewhere.into_iter().collect();
     }
 
     /// An empty list, for the robot with this number.
@@ -184,6 +189,7 @@ impl Requests {
             delivered: Numbers::default(),
             assigned: Vec::new(),
             requested: BTreeMap::new(),
+            of_elsewhere: BTreeSet::new(),
         }
     }
 
@@ -202,14 +208,22 @@ impl Requests {
         }
     }
 
-    /// Handles what a master assigned to this robot.
-    pub fn hear_assignment(&mut self, assignment: &Assignment, cause: Cause) {
+    /// Handles what a master assigned to this robot, in this program or in another one.
+    pub fn hear_assignment(&mut self, assignment: &Assignment, is_from_elsewhere: bool, cause: Cause) {
         let Assignment { luggage, from, to, withdrawn, .. } = *assignment;
+        if is_from_elsewhere && !withdrawn {
+            self.of_elsewhere.insert(luggage);
+        }
         self.assigned.retain(|known| known.job.luggage != luggage);
         if self.assigned.len() >= MOST_ASSIGNED {
             self.assigned.remove(0);
         }
         self.assigned.push(Assigned { job: Job { luggage, from, to }, withdrawn, cause });
+    }
+
+    /// True if luggage was announced from another program.
+    pub(in crate::robot) fn is_of_elsewhere(&self, luggage: u32) -> bool {
+        self.of_elsewhere.contains(&luggage)
     }
 
     /// The oldest assignment that the robot has not answered.
@@ -246,6 +260,7 @@ impl Requests {
         }
         if matches!(event.stage, LuggageStage::Delivered | LuggageStage::GivenUp) {
             self.visits.remove(&event.luggage);
+            self.of_elsewhere.remove(&event.luggage);
         }
         if event.stage == LuggageStage::Delivered {
             self.delivered.insert(event.luggage);
@@ -295,6 +310,9 @@ impl Requests {
         if !event.is_request_for(self.number) || is_over {
             return;
         }
+        if header.is_from_elsewhere() {
+            self.of_elsewhere.insert(event.luggage);
+        }
         if !is_again {
             // From where it is now, it may be in reach.
             let is_elsewhere = |refused: &Refused| refused.from.is_some_and(|from| from != event.from);
@@ -335,8 +353,10 @@ impl Requests {
     /// Keeps the open requests of a part of the map, for a robot that hears no more of the others.
     pub(in crate::robot) fn keep(&mut self, is_near: impl Fn(Block) -> bool) {
         self.open.retain(|request| is_near(request.job.from));
-        let Requests { open, claimed, requested, .. } = self;
-        requested.retain(|luggage, _| open.iter().chain(&*claimed).any(|request| request.job.luggage == *luggage));
+        let Requests { open, claimed, requested, assigned, of_elsewhere, .. } = self;
+        let is_open = |luggage: u32| open.iter().chain(&*claimed).any(|request| request.job.luggage == luggage);
+        requested.retain(|luggage, _| is_open(*luggage));
+        of_elsewhere.retain(|luggage| is_open(*luggage) || assigned.iter().any(|one| one.job.luggage == *luggage));
     }
 
     /// Removes requests that other robots took an interest in.

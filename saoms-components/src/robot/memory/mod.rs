@@ -8,6 +8,7 @@ use saoms_api::{Cause, Failure, Field, Message, Saved, SavedLoops, Time};
 
 use super::Job;
 use super::hardware_client::HardwareMemory;
+use super::job::lease::Leased;
 use super::knowledge::{JobEnd, RobotKnowledge, Trouble, Variables};
 use super::lists::ListsMemory;
 use super::routes::RoutesMemory;
@@ -52,6 +53,7 @@ struct Memory {
     loaded: bool,
     said_homeward: bool,
     energy: Energy,
+    lease: Option<Leased>,
     traffic: TrafficMemory,
     leg: Leg,
     zones: Option<ZoneMemory>,
@@ -121,6 +123,7 @@ impl RobotKnowledge {
             loaded: self.loaded,
             said_homeward: self.said_homeward,
             energy: self.energy.clone(),
+            lease: self.lease.as_deref().copied(),
             traffic: self.traffic.memory(),
             leg: self.leg,
             zones: self.zones.as_ref().and_then(|zones| zones.save()),
@@ -154,7 +157,7 @@ impl RobotKnowledge {
         (self.trouble, self.failures) = (memory.trouble, memory.failures);
         (self.untold, self.is_assigned, self.lingers) = (memory.untold, memory.is_assigned, memory.lingers);
         (self.loaded, self.said_homeward) = (memory.loaded, memory.said_homeward);
-        (self.energy, self.leg) = (memory.energy, memory.leg);
+        (self.energy, self.leg, self.lease) = (memory.energy, memory.leg, memory.lease.map(Box::new));
         self.traffic.restore(memory.traffic);
         if let (Some(zones), Some(memory)) = (&mut self.zones, memory.zones) {
             zones.restore(self.number, memory);

@@ -5,7 +5,7 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use saoms_api::Cause;
 use saoms_api::extension::FailureNotice;
-use saoms_api::host::TopicDeclaration;
+use saoms_api::host::{FIRST_ELSEWHERE as FIRST, TopicDeclaration};
 use saoms_lang::assembly::ComponentSpec;
 use saoms_lang::registry::ClassTopic;
 
@@ -14,9 +14,6 @@ use crate::report::PartOfFleet;
 use crate::schedule::engine::Engine;
 use crate::schedule::inject::OUTSIDE;
 use crate::schedule::networks::NO_NETWORK;
-
-/// The number of the first component of another program. Components of this one have numbers from 0.
-const FIRST: u32 = 1 << 31;
 
 /// The components of other programs.
 #[derive(Debug, Default)]

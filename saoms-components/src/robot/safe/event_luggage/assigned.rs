@@ -1,6 +1,6 @@
 //! Luggage that a master assigns to the robot.
 
-use saoms_api::Cause;
+use saoms_api::{Cause, Time};
 
 use crate::hardware::ActionKind;
 use crate::robot::{Assigned, Job, RobotKnowledge};
@@ -56,13 +56,14 @@ impl RobotKnowledge {
     }
 
     /// Makes this its job.
-    pub(super) fn take(&mut self, job: Job) {
+    pub(super) fn take(&mut self, job: Job, now: Time) {
         // Who took an interest before decided by itself; who has a job gets another one.
         let decided = std::mem::replace(&mut self.variables.transporter, true);
         self.is_assigned = !decided || self.job.is_some();
         self.variables.busy = true;
         self.energy.lacks = 0;
         self.job = Some(job);
+        self.lease(job.luggage, now);
         self.lists.requests.take(job.luggage);
     }
 }

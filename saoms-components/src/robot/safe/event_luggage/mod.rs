@@ -199,7 +199,7 @@ impl Loop for SafeEventLuggage {
                 }
                 knowledge.stops = knowledge.lists.requests.stops(job.luggage).to_vec();
                 knowledge.visits = !knowledge.stops.is_empty();
-                knowledge.take(job);
+                knowledge.take(job, context.now());
                 knowledge.set_out(&job);
                 match knowledge.visits {
                     true => info!(context, "goes to {} for visit {}", job.from, job.luggage - FIRST_VISIT),

@@ -1,3 +1,5 @@
+pub(super) mod lease;
+
 use saoms_api::Field;
 
 use crate::grid::Block;

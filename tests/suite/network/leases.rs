@@ -1,0 +1,72 @@
+//! Programs with robots that stop for longer than a lease, and go on.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::nodes::{start, write_fleet};
+use super::programs::{Program, Programs};
+
+/// Time for which programs stop here: longer than a lease, and than that of all messages on their way.
+const LONG: Duration = Duration::from_secs(14);
+
+/// Each piece is brought once, by whichever program, and nobody enters what was granted to another one.
+#[track_caller]
+fn each_is_delivered_once(programs: &Programs, floors: [&Program; 2], pieces: u32) {
+    let printed = floors.map(Program::printed).concat();
+    for piece in 1..=pieces {
+        for what in ["collected", "deposited"] {
+            let found = printed.matches(&format!("{what} luggage {piece} at")).count();
+            assert_eq!(found, 1, "luggage {piece} is {what} {found} times\n{}", programs.printed());
+        }
+    }
+    for sign in ["which was granted to", "could not collect", "gives up luggage", "panicked"] {
+        assert!(!programs.printed().contains(sign), "{sign}\n{}", programs.printed());
+    }
+}
+
+#[test]
+fn luggage_of_a_program_that_stops_passes_on_unless_it_is_on_board() {
+    let programs = Programs::new();
+    // The first robot is nearer, and slow. Its second piece is on board when its program stops again.
+    write_fleet(
+        &programs,
+        "at 2s luggage (9,1) to (9,10)\nthen 30s luggage (2,1) to (9,1)",
+        &[("gate-a", "500"), ("gate-b", "100")],
+    );
+    let others = ["control", "traffic"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    let [first, second] = ["gate-a", "gate-b"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    programs.until(&first, "takes luggage 1 from");
+    first.signal(libc::SIGSTOP);
+    programs.until(&others[0], "luggage 1 waits again at (9,1): nothing was heard of robot 1");
+    programs.until(&second, "collected luggage 1 at");
+    first.signal(libc::SIGCONT);
+    programs.until(&first, "collected luggage 2 at");
+    first.signal(libc::SIGSTOP);
+    sleep(LONG);
+    assert!(!second.printed().contains("takes luggage 2"), "{}", programs.printed());
+    first.signal(libc::SIGCONT);
+    for program in [&others[0], &others[1], &first, &second] {
+        programs.ends(program, 0);
+    }
+    each_is_delivered_once(&programs, [&first, &second], 2);
+    assert!(second.printed().contains("deposited luggage 1") && first.printed().contains("deposited luggage 2"));
+}
+
+#[test]
+fn programs_of_robots_that_stop_in_turn_deliver_each_piece_once() {
+    let programs = Programs::new();
+    let scenario = "at 1s every 700ms 24 times luggage (4,0)..(10,10) to (1,0)..(4,10)";
+    write_fleet(&programs, scenario, &[("gate-a", "100"), ("gate-b", "150")].repeat(2));
+    let others = ["control", "traffic"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    let floors = ["gate-a", "gate-b"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    for floor in &floors {
+        programs.until(floor, "takes luggage");
+        floor.signal(libc::SIGSTOP);
+        sleep(LONG);
+        floor.signal(libc::SIGCONT);
+    }
+    for program in others.iter().chain(&floors) {
+        programs.ends(program, 0);
+    }
+    each_is_delivered_once(&programs, [&floors[0], &floors[1]], 24);
+}
