@@ -85,6 +85,7 @@ fn run_settings(root: NewElement, run: &RunPolicy) -> NewElement {
         ("s:alertTokenEnv", url.and_then(|url| url.token_env.clone())),
         ("s:alertCommand", run.alert_command.as_ref().map(|command| command.line.clone())),
         ("s:hangup", hangup.map(str::to_owned)),
+        ("s:lostLink", run.lost_link.map(|effect| effect.name().to_owned())),
     ];
     let written = settings.into_iter().filter_map(|(name, value)| Some((name, value?)));
     written.fold(root, |root, (name, value)| root.with(name, value).declare("s", SAOMS_NAMESPACE))

@@ -34,6 +34,9 @@ const ROOM_AGAIN: Duration = Duration::from_millis(1);
 const MOST_UNDELIVERED: usize = 4_096;
 /// Messages of components after which the network gets what they say, at most.
 const MOST_AT_ONCE: usize = 1_024;
+/// The kinds of alerts of networks.
+const UNREACHABLE: &str = "unreachable";
+const LINK: &str = "link";
 /// Time from one word of a router about rights to the next.
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 /// Time for which a program that ends waits until others have received its events.
@@ -61,6 +64,13 @@ pub trait Fleet: Send + 'static {
 
     /// Tells something about the network.
     fn tell(&self, level: Level, text: String);
+
+    /// Tells a person that the link to the network is lost, or that a program gives no sign of life; without a text,
+    /// that it is over.
+    fn alert(&self, kind: &str, subject: &str, text: Option<String>);
+
+    /// The link is lost: no other program was heard for the patience of this one.
+    fn lose(&self);
 }
 
 /// What a program is on a network.
@@ -126,6 +136,7 @@ impl Client {
             granted_at: None,
             next_token: FIRST_OF_TOPICS,
             others: BTreeSet::new(),
+            link: Link::default(),
         };
         let own = Arc::clone(port);
         let thread = std::thread::Builder::new().name("saoms-network".to_owned());
@@ -175,6 +186,16 @@ struct Member<F> {
     next_token: u64,
     /// Versions of other programs that were told.
     others: BTreeSet<String>,
+    link: Link,
+}
+
+/// The link to the other programs.
+#[derive(Debug, Default)]
+struct Link {
+    /// Since when the transport says that it is down.
+    down: Option<u64>,
+    /// True if it counts as lost.
+    is_lost: bool,
 }
 
 impl<F: Fleet> Member<F> {
@@ -190,6 +211,7 @@ impl<F: Fleet> Member<F> {
             self.grant();
             self.fleet.deliver(&mut self.undelivered);
             self.agree(now);
+            self.watch_link(now);
             if is_closed {
                 let since = *ending.get_or_insert_with(Instant::now);
                 if self.exchange.is_complete() && self.unsent.is_empty() || since.elapsed() > LINGER {
@@ -219,6 +241,22 @@ impl<F: Fleet> Member<F> {
         let since = self.done_since.filter(|_| is_done);
         self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
         self.done_since = is_done.then(|| since.unwrap_or(now));
+    }
+
+    /// Tells that the link is lost, and does what follows from that: it is down for the patience of this program, or none
+    /// of the other programs is heard.
+    fn watch_link(&mut self, now: u64) {
+        let is_down = self.link.down.is_some_and(|since| now.saturating_sub(since) > self.patience);
+        let is_lost = is_down || self.exchange.hears_nobody();
+        if std::mem::replace(&mut self.link.is_lost, is_lost) == is_lost {
+            return;
+        }
+        let url = &self.membership.url;
+        let text = format!("the link to the network `{url}` is lost: no other program is heard");
+        self.fleet.alert(LINK, url, is_lost.then_some(text));
+        if is_lost {
+            self.fleet.lose();
+        }
     }
 
     /// Tells, as the router, what users may do.
@@ -263,6 +301,8 @@ impl<F: Fleet> Member<F> {
             self.fleet.tell(Level::Error, text);
         }
         for link in waiting.links {
+            let now = self.now();
+            self.link.down = (!link.is_up).then(|| self.link.down.unwrap_or(now));
             let (level, what) = if link.is_up { (Level::Info, "is there") } else { (Level::Warning, "was lost") };
             let reason = if link.reason.is_empty() { String::new() } else { format!(": {}", link.reason) };
             self.fleet.tell(level, format!("the link to the network {what}{reason}"));
@@ -388,7 +428,14 @@ impl<F: Fleet> Member<F> {
                 Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
                 Action::Tell(news) => {
                     let (level, text) = told(&news);
-                    self.fleet.tell(level, text);
+                    match &news {
+                        News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
+                        News::Back { name, .. } | News::Left { name, .. } => {
+                            self.fleet.alert(UNREACHABLE, name, None);
+                            self.fleet.tell(level, text);
+                        }
+                        _ => self.fleet.tell(level, text),
+                    }
                 }
             }
         }
@@ -420,12 +467,26 @@ impl<F: Fleet> Member<F> {
     }
 }
 
+/// Components that are named of a program that is not heard, at most.
+const MOST_NAMED: usize = 3;
+
+/// What is said of a program that is not heard.
+fn unheard(name: &str, components: &[Arc<str>]) -> String {
+    let text = format!("program `{name}` gives no sign of life");
+    let named: Vec<String> = components.iter().take(MOST_NAMED).map(|one| format!("`{one}`")).collect();
+    match components.len().saturating_sub(named.len()) {
+        _ if named.is_empty() => text,
+        0 => format!("{text}: nothing is heard of {}", named.join(", ")),
+        more => format!("{text}: nothing is heard of {} and {more} more", named.join(", ")),
+    }
+}
+
 /// What happened to the network, for people.
 fn told(news: &News) -> (Level, String) {
     match news {
         News::Joined { name, .. } => (Level::Info, format!("program `{name}` is on the network")),
         News::Left { name, .. } => (Level::Info, format!("program `{name}` has left the network")),
-        News::Unreachable { name, .. } => (Level::Warning, format!("program `{name}` gives no sign of life")),
+        News::Unreachable { name, components, .. } => (Level::Error, unheard(name, components)),
         News::Back { name, .. } => (Level::Info, format!("program `{name}` gives signs of life again")),
         News::GivenUp { name, .. } => (
             Level::Warning,

@@ -72,7 +72,7 @@ fn told(settings: Settings, others: &[&str]) -> String {
     let port: Arc<Port> = Arc::default();
     let mut network: Option<NetworkedFleet> = None;
     let fleet = RunningFleet::start_with(fleet.at("a"), settings, vec![diary.clone()], |handle| {
-        network = Some(handle.use_network("net:1", &port));
+        network = Some(handle.use_network("net:1", &port, || {}));
         Ok(())
     });
     let fleet = fleet.unwrap();

@@ -11,6 +11,8 @@ pub struct RunPolicy {
     pub alert_command: Option<AlertCommand>,
     /// What a lost terminal leads to.
     pub hangup: Hangup,
+    /// What a lost link to the other programs of a network leads to; without it the run goes on.
+    pub lost_link: Option<Hangup>,
 }
 
 /// An address for alerts.

@@ -1,4 +1,4 @@
-//! What the outermost composites say of the run: where alerts are delivered, what a lost terminal leads to, and which
+//! What the outermost composites say of the run: where alerts are delivered, what a lost terminal or link leads to, and which
 //! node is the default.
 //!
 //! What composites inside others say has no effect, so that a composite that somebody else wrote sends nothing and runs
@@ -49,6 +49,9 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let hangups =
         all().filter_map(|one| Some((one, one.run.hangup?.value.name().to_owned(), one.run.hangup?.location)));
     differ("the effect of a lost terminal", hangups.collect());
+    let links =
+        all().filter_map(|one| Some((one, one.run.lost_link?.value.name().to_owned(), one.run.lost_link?.location)));
+    differ("the effect of a lost link", links.collect());
     let nodes =
         all().filter_map(|one| one.run.default_node.as_ref().map(|node| (one, node.to_string(), node.location)));
     differ("the default node", nodes.collect());
@@ -67,5 +70,6 @@ pub(crate) fn policy(fleet: &Fleet<'_>, sources: &Sources) -> RunPolicy {
         Some(AlertCommand { line: one.run.alert_command.as_ref()?.value.to_string(), folder })
     });
     let hangup = all().find_map(|one| one.run.hangup).map(|one| one.value);
-    RunPolicy { alert_url: url, alert_command: command, hangup: hangup.unwrap_or_default() }
+    let lost_link = all().find_map(|one| one.run.lost_link).map(|one| one.value);
+    RunPolicy { alert_url: url, alert_command: command, hangup: hangup.unwrap_or_default(), lost_link }
 }

@@ -154,8 +154,8 @@ codes! {
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not have the form that SCA requires.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways; only one is allowed.";
     EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace in which it has nothing, or imports a namespace that no contribution around it exports.";
-    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "An inner composite sets the target of alerts, the effect of a lost terminal or the default node; only the outermost composite can set these.";
-    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet set different targets of alerts, effects of a lost terminal or default nodes.";
+    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "An inner composite sets the target of alerts, the effect of a lost terminal or link or the default node; only the outermost composite can set these.";
+    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet set different targets of alerts, effects of a lost terminal or link or default nodes.";
     NODE_MISSING = "S2063" Error "node-missing": "Some components of a fleet are in a node, and others are in none: no program would run them.";
     UNKNOWN_NODE = "S2064" Error "unknown-node": "The node that is to run does not exist in the fleet.";
     WIRE_BETWEEN_NODES = "S2065" Error "wire-between-nodes" [OutlivesExpansion]: "A reference of a component leads to a component of another node.";

@@ -19,7 +19,8 @@ impl Loader<'_> {
             alert_url: self.alert_url(root),
             alert_token_env: self.variable(root, "alertTokenEnv"),
             alert_command: self.own(root, "alertCommand"),
-            hangup: self.hangup(root),
+            hangup: self.hangup(root, "hangup"),
+            lost_link: self.hangup(root, "lostLink"),
             default_node: self.own(root, "defaultNode"),
             written,
         };
@@ -52,8 +53,9 @@ impl Loader<'_> {
         }
     }
 
-    fn hangup(&mut self, root: Element<'_>) -> Option<Located<Hangup>> {
-        let text = self.own(root, "hangup")?;
+    /// The value of an attribute that says what a loss leads to.
+    fn hangup(&mut self, root: Element<'_>, name: &'static str) -> Option<Located<Hangup>> {
+        let text = self.own(root, name)?;
         if let Some(value) = Hangup::from_name(&text) {
             return Some(Located::new(value, text.location));
         }
@@ -64,7 +66,7 @@ impl Loader<'_> {
             "stop" | "exit" | "terminate" | "down" | "quit" => Some(Hangup::End.name()),
             other => nearest(other, Hangup::ALL.map(Hangup::name)),
         };
-        let attribute = root.attribute_in(SAOMS_NAMESPACE, "hangup")?;
+        let attribute = root.attribute_in(SAOMS_NAMESPACE, name)?;
         let message = format!("{} is {}, expected `end`, `hold` or `goOn`", quoted(attribute.name()), quoted(&text));
         self.value_fault(attribute, message, meant);
         None

@@ -1,10 +1,10 @@
-//! What a composite says of the run of its fleet: where alerts are delivered, what a lost terminal leads to, and which
-//! node is the default.
+//! What a composite says of the run of its fleet: where alerts are delivered, what a lost terminal or link
+//! leads to, and which node is the default.
 
 use super::HttpAddress;
 use crate::source::{Located, Text};
 
-/// What a lost terminal (SIGHUP) leads to.
+/// What a lost terminal (SIGHUP) or a lost link to other programs leads to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hangup {
     /// The run ends.
@@ -46,6 +46,8 @@ pub struct RunSettings {
     pub alert_command: Option<Text>,
     /// `hangup`
     pub hangup: Option<Located<Hangup>>,
+    /// `lostLink`
+    pub lost_link: Option<Located<Hangup>>,
     /// `defaultNode`
     pub default_node: Option<Text>,
     /// Those that are written, also with a wrong value: the name with its prefix, and the place of the whole attribute.

@@ -131,7 +131,8 @@ fn simple() -> [NewElement; 5] {
         enumeration(hangup.name(), doc)
     };
     [
-        restricted("xs:token", Hangup::ALL.map(hangup)).named("Hangup", "What a lost terminal leads to."),
+        restricted("xs:token", Hangup::ALL.map(hangup))
+            .named("Hangup", "What a lost terminal or a lost link leads to."),
         restricted("xs:token", [NewElement::new("xs:pattern").with("value", r"([^\s/]|$\{[^}]*\})+")])
             .named("Name", "A name, without blanks and `/` outside of expressions such as `${index}`."),
         restricted("xs:token", [NewElement::new("xs:minLength").with("value", "1")])

@@ -117,7 +117,8 @@ impl Signalled {
     }
 }
 
-/// The end of a run by an operator.
+/// The end of a run by an operator, or for want of what it needs.
+#[derive(Clone)]
 pub(super) struct OperatorEnd(Arc<State>);
 
 impl OperatorEnd {
@@ -126,6 +127,13 @@ impl OperatorEnd {
         limit_patience(self.0.grace);
         fleet.down();
         State::give_up(&self.0, Exit::Failed);
+    }
+
+    /// Ends every component through its shutdown, as a signal does.
+    pub(super) fn interrupt(&self, fleet: &Handle) {
+        self.0.has_come.store(true, Ordering::SeqCst);
+        limit_patience(self.0.grace);
+        fleet.stop();
     }
 }
 

@@ -330,7 +330,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         // A run that has not begun does not end, and only one in virtual time has a speed.
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
-        clients = networks.join(handle, || signals.has_come())?;
+        clients = networks.join(handle, &signals)?;
         server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts));
         Ok(())
     };

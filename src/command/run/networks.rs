@@ -15,10 +15,12 @@ use saoms_core::network::exchange::Settings;
 use saoms_core::network::rights::Granted;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession};
 use saoms_core::network::{Client, Membership, Port};
-use saoms_core::schedule::{Handle, StartError};
+use saoms_core::schedule::{Handle, Order, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Diagnostic;
+use saoms_lang::model::Hangup;
 
+use super::ending::{OperatorEnd, Signalled};
 use super::{RunArguments, title};
 use crate::output::eprint;
 use settings::Resolver;
@@ -30,6 +32,8 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// Time without a sign of life after which a program is missed: three of its longest periods, between these.
 const LEAST_PATIENCE: Duration = Duration::from_secs(1);
 const LONGEST_PATIENCE: Duration = Duration::from_secs(10);
+/// Who orders the emergency stop when a link is lost.
+const LOST_LINK: &str = "lost-link";
 /// Bytes of events that are kept for programs that have not received them, at most.
 const LIMIT: usize = 256 << 20;
 
@@ -44,6 +48,8 @@ pub(super) struct Networks {
     limit: Option<Duration>,
     /// Time for which a network is waited for that is not there yet; `None` is for ever.
     wait: Option<Duration>,
+    /// What a lost link leads to.
+    lost_link: Hangup,
     /// What has to be said once the run has a log.
     notes: Vec<String>,
 }
@@ -82,6 +88,7 @@ impl Networks {
             patience: LEAST_PATIENCE,
             limit: arguments.limit,
             wait: arguments.connect_timeout,
+            lost_link: assembly.run.lost_link.unwrap_or(Hangup::GoOn),
             notes: Vec::new(),
         };
         if arguments.virtual_time {
@@ -131,17 +138,18 @@ impl Networks {
 
     /// Joins the networks, in the code that gets the control before components initialize. Waits for networks that are
     /// not there yet, until the end is asked for.
-    pub(super) fn join(self, handle: &Handle, is_over: impl Fn() -> bool) -> Result<Vec<Client>, StartError> {
+    pub(super) fn join(self, handle: &Handle, signals: &Signalled) -> Result<Vec<Client>, StartError> {
         for note in self.notes {
             handle.note(Level::Warning, note);
         }
         let mut clients = Vec::new();
         for Network { transport, components, router, others, settings, membership } in self.all {
             let port: Arc<Port> = Arc::default();
-            let wait = Wait { longest: self.wait, limit: self.limit, is_over: &is_over };
+            let wait = Wait { longest: self.wait, limit: self.limit, is_over: &|| signals.has_come() };
             let who = Who { components: &components, router: router.as_deref(), settings: &settings };
             let Some(session) = who.opened(transport, &port, handle, &wait)? else { break };
-            let fleet = handle.use_network(&settings.url, &port);
+            let (own, lost_link, ending) = (handle.clone(), self.lost_link, signals.ending());
+            let fleet = handle.use_network(&settings.url, &port, move || lose_link(&own, lost_link, &ending));
             let member = Settings {
                 program: RandomState::new().hash_one(std::process::id()),
                 name: self.name.clone(),
@@ -154,6 +162,24 @@ impl Networks {
             clients.push(client.map_err(|error| who.error(&error))?);
         }
         Ok(clients)
+    }
+}
+
+/// Does what the composite chose for a lost link.
+fn lose_link(fleet: &Handle, effect: Hangup, ending: &OperatorEnd) {
+    match effect {
+        Hangup::GoOn => {}
+        Hangup::Hold => {
+            fleet.note(Level::Warning, "all that moves is stopped until `saoms release`".to_owned());
+            let stop = Order::EmergencyStop { components: Vec::new(), by: Some(LOST_LINK.to_owned()) };
+            if let Err(error) = fleet.order(stop, None) {
+                fleet.note(Level::Warning, format!("nothing is stopped: {error}"));
+            }
+        }
+        Hangup::End => {
+            fleet.note(Level::Warning, "the run ends".to_owned());
+            ending.interrupt(fleet);
+        }
     }
 }
 

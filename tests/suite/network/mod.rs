@@ -7,6 +7,7 @@ mod errors;
 mod foreign;
 mod leases;
 mod lines;
+mod links;
 mod nodes;
 mod passwords;
 mod programs;

@@ -76,8 +76,8 @@ pub enum News {
     Joined { program: u64, name: Arc<str> },
     /// It ended.
     Left { program: u64, name: Arc<str> },
-    /// It gives no sign of life.
-    Unreachable { program: u64, name: Arc<str> },
+    /// It gives no sign of life; these components were heard of it.
+    Unreachable { program: u64, name: Arc<str>, components: Vec<Arc<str>> },
     /// It gives signs of life again.
     Back { program: u64, name: Arc<str> },
     /// It was away for so long that nothing is kept for it any more.

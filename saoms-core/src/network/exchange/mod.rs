@@ -304,6 +304,11 @@ impl Exchange {
         self.outgoing.values().map(|outgoing| outgoing.size).sum()
     }
 
+    /// True if other programs are known, and none of them gives a sign of life.
+    pub fn hears_nobody(&self) -> bool {
+        !self.peers.is_empty() && self.peers.values().all(|peer| !peer.is_reachable)
+    }
+
     /// Notes the present time.
     fn pass(&mut self, now: u64) {
         if self.now == 0 {
@@ -384,7 +389,11 @@ impl Exchange {
         for (program, peer) in &mut self.peers {
             if peer.is_reachable && now.saturating_sub(peer.heard) > peer.patience {
                 peer.is_reachable = false;
-                let news = News::Unreachable { program: *program, name: Arc::clone(&peer.name) };
+                let of_program = self.owners.iter().filter(|(_, owner)| owner.program == *program);
+                let mut components: Vec<Arc<str>> =
+                    of_program.map(|(component, _)| component.as_str().into()).collect();
+                components.sort_unstable();
+                let news = News::Unreachable { program: *program, name: Arc::clone(&peer.name), components };
                 self.actions.push(Action::Tell(news));
             }
         }

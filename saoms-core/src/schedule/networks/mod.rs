@@ -131,13 +131,15 @@ impl Engine {
 impl Handle {
     /// Puts the components whose `url` is this text on a network, in the code that gets the control
     /// [before they initialize](super::RunningFleet::start_with).
-    pub fn use_network(&self, url: &str, port: &Arc<Port>) -> NetworkedFleet {
+    ///
+    /// `lose` is called by the thread of the network whenever no other program of the network is heard any more.
+    pub fn use_network(&self, url: &str, port: &Arc<Port>, lose: impl Fn() + Send + 'static) -> NetworkedFleet {
         let mut engine = self.shared.lock();
         let network = engine.networks.all.len();
         engine.networks.all.push((url.to_owned(), Arc::clone(port)));
         engine.networks.are_done.push(false);
         self.shared.release(engine);
-        NetworkedFleet { shared: Arc::clone(&self.shared), network }
+        NetworkedFleet { shared: Arc::clone(&self.shared), network, lose: Box::new(lose) }
     }
 }
 
@@ -145,6 +147,7 @@ impl Handle {
 pub struct NetworkedFleet {
     shared: Arc<Shared>,
     network: usize,
+    lose: Box<dyn Fn() + Send>,
 }
 
 impl Fleet for NetworkedFleet {
@@ -223,5 +226,13 @@ impl Fleet for NetworkedFleet {
 
     fn tell(&self, level: Level, text: String) {
         self.shared.note(level, text);
+    }
+
+    fn alert(&self, kind: &str, subject: &str, text: Option<String>) {
+        self.shared.alert(kind, subject, text);
+    }
+
+    fn lose(&self) {
+        (self.lose)();
     }
 }

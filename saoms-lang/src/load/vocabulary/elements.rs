@@ -244,6 +244,7 @@ attributes! {
     ALERT_TOKEN_ENV = known "alertTokenEnv" Variable: "The environment variable with the token for the address of `alertUrl`, which is sent as `Authorization: Bearer ...`. The token itself is in no composite.";
     ALERT_COMMAND = known "alertCommand" Text: "The command of the shell that is run for each change of an alert, in the folder of the composite; it reads the change as JSON. `saoms run` runs it with `--alerts` alone.";
     HANGUP = known "hangup" Hangup: "What a lost terminal (SIGHUP) leads to: `end`, the default, ends the run; `hold` stops all that moves until it is released, as `saoms estop` does; `goOn` changes nothing. SIGTERM always ends the run.";
+    LOST_LINK = known "lostLink" Hangup: "What a lost link to the other programs of a network leads to: `goOn`, the default, changes nothing; `hold` stops all that moves in this program until it is released, as `saoms estop` does; `end` ends the run.";
     DEFAULT_NODE = known "defaultNode" Text: "The node of the components that are in no other one (`saoms:node`).";
 }
 
@@ -254,6 +255,7 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("composite", ALERT_TOKEN_ENV),
     ("composite", ALERT_COMMAND),
     ("composite", HANGUP),
+    ("composite", LOST_LINK),
     ("composite", DEFAULT_NODE),
     ("component", PATH),
     ("component", COUNT),

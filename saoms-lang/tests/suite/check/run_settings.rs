@@ -10,7 +10,7 @@ use super::support::{compiled, nested, part, run, told};
 
 const OWN: &str = "xmlns:s=\"urn:saoms:1\"";
 const SETTINGS: &str = "s:alertUrl=\"http://page.example:8080/hall?a=1&amp;b\" s:alertTokenEnv=\"HALL_TOKEN\" \
-                        s:alertCommand=\"./page.sh &quot;two  words&quot; &lt; x\" s:hangup=\"hold\"";
+                        s:alertCommand=\"./page.sh &quot;two  words&quot; &lt; x\" s:hangup=\"hold\" s:lostLink=\"end\"";
 const GPS: &str = "<component name=\"Gps\"><implementation.java class=\"example.Gps\"/></component>";
 
 fn with(name: &str, settings: &str, inside: &str) -> String {
@@ -21,12 +21,12 @@ fn with(name: &str, settings: &str, inside: &str) -> String {
 fn the_outermost_composite_decides() {
     let (assembly, diagnostics, sources) = run(&[&with("fleet", SETTINGS, GPS)], &[]);
     assert_eq!(told(&diagnostics, &sources), "");
-    let RunPolicy { alert_url, alert_command, hangup } = assembly.unwrap().run;
+    let RunPolicy { alert_url, alert_command, hangup, lost_link } = assembly.unwrap().run;
     let url = alert_url.unwrap();
     assert_eq!(url.address.written(), "http://page.example:8080/hall?a=1&b");
     assert_eq!(url.token_env.as_deref(), Some("HALL_TOKEN"));
     assert_eq!(alert_command.unwrap().line, "./page.sh \"two  words\" < x");
-    assert_eq!(hangup, Hangup::Hold);
+    assert_eq!((hangup, lost_link), (Hangup::Hold, Some(Hangup::End)));
 }
 
 #[test]

@@ -35,6 +35,20 @@ fn no_work_is_done_before_each_node_has_been_there() {
 }
 
 #[test]
+fn nobody_is_heard_when_all_others_are_missed() {
+    let mut own = program(&[]);
+    assert!(!own.hears_nobody(), "nobody was there yet");
+    own.hear(&alive(2, "one", Vote::Silent), 0);
+    own.hear(&alive(3, "other", Vote::Silent), 500 * MILLISECOND);
+    own.tick(1_200 * MILLISECOND);
+    assert!(!own.hears_nobody());
+    own.tick(2_000 * MILLISECOND);
+    assert!(own.hears_nobody());
+    own.hear(&Alive { number: 2, ..alive(2, "one", Vote::Silent) }, 2_100 * MILLISECOND);
+    assert!(!own.hears_nobody());
+}
+
+#[test]
 fn a_program_that_said_that_all_is_done_and_vanished_has_said_so() {
     let mut own = program(&[]);
     own.vote(Vote::Silent);

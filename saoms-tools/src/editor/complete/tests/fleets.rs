@@ -160,7 +160,7 @@ fn names_that_can_be_known_are_proposed() {
     assert_eq!(proposed(&root("s:alertTokenEnv=\"|\""))[0], "FLEET_ALERT_TOKEN");
     assert_eq!(proposed(&root("s:hangup=\"|\"")), ["end", "hold", "goOn"]);
     let attributes = proposed(&root("|"));
-    for own in ["s:alertCommand", "s:alertTokenEnv", "s:alertUrl", "s:hangup"] {
+    for own in ["s:alertCommand", "s:alertTokenEnv", "s:alertUrl", "s:hangup", "s:lostLink"] {
         assert!(attributes.iter().any(|one| one == own), "{own}: {attributes:?}");
     }
     let bound = format!("{WORLD}{ROBOT}<reference name=\"world\"><binding.sca uri=\"|\"/></reference></component>");
