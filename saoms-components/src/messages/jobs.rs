@@ -29,8 +29,8 @@ pub struct Assignment {
     pub to: Block,
     /// Block of the robot's charger. On a large map a robot hears the assignments for its charger alone.
     pub charger: Block,
-    /// Of the answer to a lease (LEASETOPIC) its number: the robot may collect the luggage, or has to release it if it is
-    /// withdrawn. 0 in all else.
+    /// Of the answer to a lease (LEASETOPIC) its number: the robot may collect the luggage, or has to release it if it
+    /// is withdrawn. 0 in all else.
     pub lease: u64,
 }
 

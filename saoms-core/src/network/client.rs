@@ -243,8 +243,8 @@ impl<F: Fleet> Member<F> {
         self.done_since = is_done.then(|| since.unwrap_or(now));
     }
 
-    /// Tells that the link is lost, and does what follows from that: it is down for the patience of this program, or none
-    /// of the other programs is heard.
+    /// Tells that the link is lost, and does what follows from that: it is down for the patience of this program, or
+    /// none of the other programs is heard.
     fn watch_link(&mut self, now: u64) {
         let is_down = self.link.down.is_some_and(|since| now.saturating_sub(since) > self.patience);
         let is_lost = is_down || self.exchange.hears_nobody();

@@ -1,5 +1,5 @@
-//! What the outermost composites say of the run: where alerts are delivered, what a lost terminal or link leads to, and which
-//! node is the default.
+//! What the outermost composites say of the run: where alerts are delivered, what a lost terminal or link leads to, and
+//! which node is the default.
 //!
 //! What composites inside others say has no effect, so that a composite that somebody else wrote sends nothing and runs
 //! no command where it is used.

@@ -55,7 +55,7 @@ fn luggage_of_a_program_that_stops_passes_on_unless_it_is_on_board() {
 #[test]
 fn programs_of_robots_that_stop_in_turn_deliver_each_piece_once() {
     let programs = Programs::new();
-    let scenario = "at 1s every 700ms 24 times luggage (4,0)..(10,10) to (1,0)..(4,10)";
+    let scenario = "from 1s every 700ms 24 times luggage (4,0)..(10,10) to (1,0)..(4,10)";
     write_fleet(&programs, scenario, &[("gate-a", "100"), ("gate-b", "150")].repeat(2));
     let others = ["control", "traffic"].map(|node| start(&programs, "fleet.composite", node, &[]));
     let floors = ["gate-a", "gate-b"].map(|node| start(&programs, "fleet.composite", node, &[]));

@@ -201,8 +201,8 @@ impl MasterEnvironmentKnowledge {
         }
     }
 
-    /// Handles what a robot of another program has on a lease. Gives the answer, if it gets one. Masters of zones do not
-    /// answer for luggage of others.
+    /// Handles what a robot of another program has on a lease. Gives the answer, if it gets one. Masters of zones
+    /// answer for their own luggage alone.
     pub(in crate::master) fn hear_lease(&mut self, lease: &Lease, now: Time) -> Option<Assignment> {
         self.crew.hear_lease(lease.robot);
         if self.part.is_some() && self.open.job(lease.luggage).is_none() {

@@ -1,8 +1,8 @@
 //! Luggage that robots of other programs have on a lease.
 //!
 //! Such a robot collects luggage only once the master has answered that it may. The master answers so to the one that
-//! has taken it, and gives it to no other one from then on until that one or a person says what became of it. Before, it
-//! gives it to another robot when it has not heard for the time of the lease of the one that has taken it.
+//! has taken it, and gives it to no other one from then on until that one or a person says what became of it. Before,
+//! it gives it to another robot when it has not heard for the time of the lease of the one that has taken it.
 
 use std::time::Duration;
 

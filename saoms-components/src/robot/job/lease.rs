@@ -2,8 +2,8 @@
 //!
 //! The master may not hear the robot, and think that it is not there: then it gives luggage that the robot did not
 //! collect to another one. So the robot collects nothing before the master has answered that it may. From then on the
-//! luggage is the robot's until it says itself what became of it, or a person does. No clock is needed for that: a robot
-//! whose program was stopped for any time between the answer and the collecting collects what is still its own.
+//! luggage is the robot's until it says itself what became of it, or a person does. No clock is needed for that: a
+//! robot whose program was stopped for any time between the answer and the collecting collects what is still its own.
 
 use saoms_api::{Cause, Context, Failure, Field, Time};
 
