@@ -12,6 +12,7 @@ use super::exchange::wire::Vote;
 use super::exchange::{Action, Arrived, Destination, Exchange, News, OwnMessage, Settings};
 use super::port::{Frame, FromRun, Port, Waiting};
 use super::rights::{Granted, Rights};
+use super::told::told;
 use super::transport::TransportSession;
 use super::{FROM_OUTSIDE, key};
 
@@ -464,68 +465,5 @@ impl<F: Fleet> Member<F> {
                 true
             }
         }
-    }
-}
-
-/// Components that are named of a program that is not heard, at most.
-const MOST_NAMED: usize = 3;
-
-/// What is said of a program that is not heard.
-fn unheard(name: &str, components: &[Arc<str>]) -> String {
-    let text = format!("program `{name}` gives no sign of life");
-    let named: Vec<String> = components.iter().take(MOST_NAMED).map(|one| format!("`{one}`")).collect();
-    match components.len().saturating_sub(named.len()) {
-        _ if named.is_empty() => text,
-        0 => format!("{text}: nothing is heard of {}", named.join(", ")),
-        more => format!("{text}: nothing is heard of {} and {more} more", named.join(", ")),
-    }
-}
-
-/// What happened to the network, for people.
-fn told(news: &News) -> (Level, String) {
-    match news {
-        News::Joined { name, .. } => (Level::Info, format!("program `{name}` is on the network")),
-        News::Left { name, .. } => (Level::Info, format!("program `{name}` has left the network")),
-        News::Unreachable { name, components, .. } => (Level::Error, unheard(name, components)),
-        News::Back { name, .. } => (Level::Info, format!("program `{name}` gives signs of life again")),
-        News::GivenUp { name, .. } => (
-            Level::Warning,
-            format!(
-                "program `{name}` was away for so long that no more events are kept for it: it will have lost some"
-            ),
-        ),
-        News::Unreceived { name, topic, count } => (
-            Level::Error,
-            format!("program `{name}` has not received {count} messages on topic `{topic}`, and this program ends"),
-        ),
-        News::Twice { component, name, .. } => (
-            Level::Error,
-            format!(
-                "component `{component}` runs in program `{name}`, and in another one: the messages of the one that began first are ignored; a component \
-                 runs once in a fleet"
-            ),
-        ),
-        News::Anew { component, name, after, .. } => (
-            Level::Warning,
-            format!("component `{component}` has begun anew in program `{name}`, after {after} messages"),
-        ),
-        News::Differs { name, topic, .. } => (
-            Level::Error,
-            format!(
-                "program `{name}` sends other messages on topic `{topic}` than this one reads: they are ignored; build both programs \
-                 from one version"
-            ),
-        ),
-        News::Lost { name, topic, count, .. } => (
-            Level::Error,
-            format!("{count} messages of program `{name}` on topic `{topic}` are lost: it does not have them any more"),
-        ),
-        News::Overflow { topic, count } => (
-            Level::Error,
-            format!(
-                "{count} messages on topic `{topic}` are lost for programs that did not receive them in time: too many \
-                 waited for them"
-            ),
-        ),
     }
 }

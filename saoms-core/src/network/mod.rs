@@ -9,6 +9,7 @@ pub mod exchange;
 pub mod key;
 mod port;
 pub mod rights;
+mod told;
 pub mod transport;
 
 /// The component that messages come from which no component of the fleet sends. A program adds its number.
