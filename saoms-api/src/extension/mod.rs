@@ -10,6 +10,7 @@
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
 //! - [`RouterClass`]: a class whose components are routers of networks,
+//! - [`RemoteProxy`]: how services of an interface are called in other programs without waiting,
 //! - [`FailureNotice`]: what a fleet is told of a component that failed and lost what it knew.
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
@@ -20,6 +21,7 @@ mod failures;
 mod invariants;
 mod language;
 mod picture;
+mod remote;
 mod routers;
 mod summary;
 
@@ -35,5 +37,6 @@ pub use language::{
     RaisedFault,
 };
 pub use picture::{PictureRegistration, RunPicture};
+pub use remote::{CallLine, CallOutcome, CallProxy, RemoteProxy};
 pub use routers::{Access, Router, RouterClass, TlsPaths, Topics};
 pub use summary::{Counts, RunSummary};

@@ -120,7 +120,8 @@ fn differences(
         same && one.service == other.service
     };
     let same_targets = |one: &Wire, other: &Wire| {
-        one.targets.len() == other.targets.len()
+        one.elsewhere == other.elsewhere
+            && one.targets.len() == other.targets.len()
             && one.targets.iter().zip(&other.targets).all(|(one, other)| same_target(one, other))
     };
     for wire in &after.references {

@@ -71,6 +71,7 @@ fn assembly(text: &str) -> Assembly {
                         .map(|component| WireTarget { component, service: "s".to_owned() })
                         .into_iter()
                         .collect(),
+                    elsewhere: Box::default(),
                 }),
             }
         }
@@ -148,7 +149,7 @@ fn assembly_of_chain(text: &str) -> Assembly {
             .then(|| WireTarget { component: place + 1, service: "s".to_owned() })
             .into_iter()
             .collect();
-        let wire = Wire { reference: "next".to_owned(), interface: "i".to_owned(), targets };
+        let wire = Wire { reference: "next".to_owned(), interface: "i".to_owned(), targets, elsewhere: Box::default() };
         let path = line.split(' ').next().unwrap().to_owned();
         assembly.components.push(ComponentSpec { path, references: vec![wire], ..first.clone() });
     }

@@ -1,6 +1,6 @@
 //! The thread of a program's part of a network.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -8,10 +8,12 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use saoms_api::Level;
 use saoms_api::host::{cdr, shown};
 
-use super::exchange::wire::Vote;
-use super::exchange::{Action, Arrived, Destination, Exchange, News, OwnMessage, Settings};
+use super::exchange::call::Outcome;
+use super::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
+use super::fleet::{Fleet, FromNetwork, Membership};
 use super::port::{Frame, FromRun, Port, Waiting};
 use super::rights::{Granted, Rights};
+use super::ticket::Ticket;
 use super::told::told;
 use super::transport::TransportSession;
 use super::{FROM_OUTSIDE, key};
@@ -21,6 +23,8 @@ const ALIVE: u64 = 1;
 const ASK: u64 = 2;
 const COVERED: u64 = 3;
 const ACCESS: u64 = 4;
+const CALL: u64 = 5;
+const REPLY: u64 = 6;
 /// From here on each topic has two: one for its messages, one for those that this program asked for again.
 const FIRST_OF_TOPICS: u64 = 16;
 
@@ -42,56 +46,6 @@ const LINK: &str = "link";
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 /// Time for which a program that ends waits until others have received its events.
 const LINGER: Duration = Duration::from_secs(15);
-
-/// A message of another program for the fleet.
-#[derive(Clone, Debug)]
-pub struct FromNetwork {
-    /// The topic.
-    pub topic: Arc<str>,
-    /// The message.
-    pub arrived: Arrived,
-}
-
-/// The fleet of a program, as its part of a network sees it.
-pub trait Fleet: Send + 'static {
-    /// Takes messages from the front, as many as find room.
-    fn deliver(&self, messages: &mut VecDeque<FromNetwork>);
-
-    /// Whether it sees work left.
-    fn vote(&self) -> Vote;
-
-    /// Whether all programs of the network agree that no work is left: the run may end then.
-    fn agree(&self, is_done: bool);
-
-    /// Tells something about the network.
-    fn tell(&self, level: Level, text: String);
-
-    /// Tells a person that the link to the network is lost, or that a program gives no sign of life; without a text,
-    /// that it is over.
-    fn alert(&self, kind: &str, subject: &str, text: Option<String>);
-
-    /// The link is lost: no other program was heard for the patience of this one.
-    fn lose(&self);
-}
-
-/// What a program is on a network.
-#[derive(Clone, Debug, Default)]
-pub struct Membership {
-    /// Where the network is.
-    pub url: String,
-    /// The user as which it has joined.
-    pub user: Option<String>,
-    /// Of the router: what it lets users do, if that is not everything.
-    pub grants: Option<Granted>,
-    /// The components that read each topic.
-    pub readers: BTreeMap<String, Vec<String>>,
-}
-
-impl Membership {
-    fn readers(&self, topic: &str) -> Vec<String> {
-        self.readers.get(topic).cloned().unwrap_or_default()
-    }
-}
 
 /// A program's part of a network. Dropping it leaves the network.
 #[derive(Debug)]
@@ -117,6 +71,10 @@ impl Client {
         session.subscribe(&key::alive_of_all(), ALIVE)?;
         session.subscribe(&key::ask(program), ASK)?;
         session.subscribe(&key::covered(program), COVERED)?;
+        if membership.has_calls {
+            session.subscribe(&key::call(program), CALL)?;
+            session.subscribe(&key::reply(program), REPLY)?;
+        }
         if membership.user.is_some() {
             session.subscribe(&key::access(), ACCESS)?;
         }
@@ -137,6 +95,7 @@ impl Client {
             granted_at: None,
             next_token: FIRST_OF_TOPICS,
             others: BTreeSet::new(),
+            tickets: HashMap::new(),
             link: Link::default(),
         };
         let own = Arc::clone(port);
@@ -187,6 +146,8 @@ struct Member<F> {
     next_token: u64,
     /// Versions of other programs that were told.
     others: BTreeSet<String>,
+    /// Where the outcomes of calls go, by their lines and numbers.
+    tickets: HashMap<(u64, u64), Arc<Ticket>>,
     link: Link,
 }
 
@@ -215,13 +176,16 @@ impl<F: Fleet> Member<F> {
             self.watch_link(now);
             if is_closed {
                 let since = *ending.get_or_insert_with(Instant::now);
-                if self.exchange.is_complete() && self.unsent.is_empty() || since.elapsed() > LINGER {
+                let is_complete = self.exchange.is_complete() && !self.exchange.awaits_answers();
+                if is_complete && self.unsent.is_empty() || since.elapsed() > LINGER {
                     break;
                 }
             }
         }
         self.exchange.leave();
         self.carry_out();
+        port.end();
+        self.tickets.drain().for_each(|(_, ticket)| ticket.fill(Outcome::Dropped));
     }
 
     /// Lets the run end when no program has seen work left for so long that messages on their way have arrived.
@@ -336,6 +300,19 @@ impl<F: Fleet> Member<F> {
                 }
                 self.exchange.read(&topic, is_state, schema);
             }
+            FromRun::Call { call, ticket } => {
+                if let Some(told) = self.rights.as_mut().and_then(|rights| rights.call(&call.caller)) {
+                    self.fleet.tell(Level::Error, told);
+                }
+                let line = call.line;
+                let number = self.exchange.call(call, self.now());
+                self.tickets.insert((line, number), ticket);
+            }
+            FromRun::Beat { node, component, caller, period } => {
+                self.exchange.beat(&node, &component, &caller, period);
+            }
+            FromRun::Reply { program, line, number, answer } => self.exchange.reply(program, line, number, answer),
+            FromRun::Unserved { program, line, number } => self.exchange.unserved(program, line, number),
             FromRun::Message { topic, mut component, to, is_state, schema, message } => {
                 if let Some(told) = self.rights.as_mut().and_then(|rights| rights.write(&topic, &component)) {
                     self.fleet.tell(Level::Error, told);
@@ -401,6 +378,16 @@ impl<F: Fleet> Member<F> {
                     self.exchange.cover(&covered, now);
                 }
             }
+            CALL => {
+                if let Ok(request) = cdr::decode(&frame.message) {
+                    self.exchange.take_request(request, now);
+                }
+            }
+            REPLY => {
+                if let Ok(reply) = cdr::decode(&frame.message) {
+                    self.exchange.take_reply(reply, now);
+                }
+            }
             FIRST_OF_TOPICS.. => {
                 let is_again = !(frame.token - FIRST_OF_TOPICS).is_multiple_of(2);
                 if let Some(topic) = topic(if is_again { 4 } else { 3 }) {
@@ -427,7 +414,16 @@ impl<F: Fleet> Member<F> {
                     self.put_or_keep(&to, bytes, Some(envelope));
                 }
                 Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
+                Action::Serve(request) => self.fleet.serve(request),
+                Action::Answered { line, number, outcome } => {
+                    if let Some(ticket) = self.tickets.remove(&(line, number)) {
+                        ticket.fill(outcome);
+                    }
+                }
                 Action::Tell(news) => {
+                    if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
+                        self.fleet.misses(name);
+                    }
                     let (level, text) = told(&news);
                     match &news {
                         News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
@@ -449,6 +445,8 @@ impl<F: Fleet> Member<F> {
             Destination::Alive(program) => key::alive(*program),
             Destination::Ask(program) => key::ask(*program),
             Destination::Covered(program) => key::covered(*program),
+            Destination::Call(program) => key::call(*program),
+            Destination::Reply(program) => key::reply(*program),
         };
         if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
             self.unsent.push_back((key, bytes, envelope));

@@ -7,6 +7,8 @@
 //! | `saoms/1/ask/PROGRAM` | requests to this program to send messages again |
 //! | `saoms/1/again/PROGRAM/TOPIC` | messages that this program asked for |
 //! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
+//! | `saoms/1/call/PROGRAM` | calls of its components |
+//! | `saoms/1/reply/PROGRAM` | answers to its calls |
 //! | `saoms/1/access` | what the router lets users do |
 //!
 //! A program is a number in hexadecimal digits. In names, whatever is not an ASCII letter, a digit, `-`, `_` or `.` is
@@ -108,14 +110,30 @@ pub fn of_user(access: &Access) -> UserKeys {
         let of_topic = |name: &String| [format!("{PREFIX}/topic/{name}/*"), format!("{PREFIX}/again/*/{name}")];
         common().into_iter().chain(names(topics).iter().flat_map(of_topic)).collect::<Vec<String>>()
     };
-    let mut subscribe = of(&access.reads);
+    let (mut put, mut subscribe) = (of(&access.writes), of(&access.reads));
     subscribe.push(self::access());
-    UserKeys { user: access.user.clone(), put: of(&access.writes), subscribe }
+    // A call can do anything, and an answer says what was done: both are for who may everything.
+    let calls = [format!("{PREFIX}/call/*"), format!("{PREFIX}/reply/*")];
+    if access.writes == Topics::All && access.reads == Topics::All {
+        put.extend(calls.clone());
+        subscribe.extend(calls);
+    }
+    UserKeys { user: access.user.clone(), put, subscribe }
 }
 
 /// The key of answers to a program about states.
 pub fn covered(program: u64) -> String {
     format!("{PREFIX}/covered/{program:x}")
+}
+
+/// The key of calls of components of a program.
+pub fn call(program: u64) -> String {
+    format!("{PREFIX}/call/{program:x}")
+}
+
+/// The key of answers to calls of a program.
+pub fn reply(program: u64) -> String {
+    format!("{PREFIX}/reply/{program:x}")
 }
 
 #[cfg(test)]

@@ -6,15 +6,19 @@
 
 mod client;
 pub mod exchange;
+mod fleet;
 pub mod key;
 mod port;
 pub mod rights;
+mod ticket;
 mod told;
 pub mod transport;
 
 /// The component that messages come from which no component of the fleet sends. A program adds its number.
 pub(crate) const FROM_OUTSIDE: &str = "(outside)";
 
-pub use client::{Client, Fleet, FromNetwork, Membership};
+pub use client::Client;
+pub use fleet::{Fleet, FromNetwork, Membership};
 pub(crate) use port::FromRun;
 pub use port::Port;
+pub(crate) use ticket::Ticket;

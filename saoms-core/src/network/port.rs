@@ -4,8 +4,11 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use saoms_api::CallError;
 use saoms_api::host::SharedMessage;
 
+use super::exchange::call::{Outcome, OwnCall};
+use super::ticket::Ticket;
 use super::transport::{Delivered, Receiver};
 
 /// Messages of components that wait for the thread of the network, at most.
@@ -29,6 +32,15 @@ pub(crate) enum FromRun {
     },
     /// Components read a topic.
     Reads { topic: Arc<str>, is_state: bool, schema: u64 },
+    /// A component calls one of another program; its outcome goes to the ticket.
+    Call { call: OwnCall, ticket: Arc<Ticket> },
+    /// A component has executed that uses the hardware of a component of this node; it does so again within this time
+    /// in nanoseconds.
+    Beat { node: String, component: String, caller: Arc<str>, period: u64 },
+    /// The answer to a call of another program.
+    Reply { program: u64, line: u64, number: u64, answer: Result<Vec<u8>, CallError> },
+    /// A call of another program did not begin in time, and does not any more.
+    Unserved { program: u64, line: u64, number: u64 },
 }
 
 /// A frame that arrived.
@@ -57,6 +69,8 @@ pub(super) struct Waiting {
     bytes: usize,
     pub(super) links: Vec<LinkChange>,
     pub(super) is_closed: bool,
+    /// True once nobody takes anything any more.
+    has_ended: bool,
     sleeps: bool,
 }
 
@@ -84,10 +98,14 @@ impl Port {
     pub(crate) fn put(&self, all: impl Iterator<Item = FromRun>) {
         let mut waiting = self.lock();
         for from_run in all {
-            if waiting.from_run.len() < MOST_MESSAGES {
-                waiting.from_run.push(from_run);
-            } else {
-                waiting.lost += 1;
+            match from_run {
+                from_run if waiting.from_run.len() < MOST_MESSAGES && !waiting.has_ended => {
+                    waiting.from_run.push(from_run);
+                }
+                FromRun::Call { ticket, .. } => ticket.fill(Outcome::Dropped),
+                // Heartbeats are lost as on a network, and calls are made again.
+                FromRun::Beat { .. } | FromRun::Reply { .. } | FromRun::Unserved { .. } => {}
+                FromRun::Message { .. } | FromRun::Reads { .. } => waiting.lost += 1,
             }
         }
         self.wake(waiting);
@@ -98,6 +116,17 @@ impl Port {
         let mut waiting = self.lock();
         waiting.is_closed = true;
         self.wake(waiting);
+    }
+
+    /// The thread of the network has ended: what the run leaves from now on is lost.
+    pub(super) fn end(&self) {
+        let mut waiting = self.lock();
+        waiting.has_ended = true;
+        for from_run in std::mem::take(&mut waiting.from_run) {
+            if let FromRun::Call { ticket, .. } = from_run {
+                ticket.fill(Outcome::Dropped);
+            }
+        }
     }
 
     /// Takes what waits, at once or when there is something, for so long at most. Who does not know yet that the end

@@ -78,6 +78,21 @@ impl Rights {
         self.judge_write(topic, component)
     }
 
+    /// A component calls one of another program. Gives what is to be told.
+    pub(super) fn call(&mut self, component: &str) -> Option<String> {
+        let own = self.known.as_ref()?;
+        let may = |names: &[String]| names.iter().any(|name| name == ALL);
+        let what = format!("component `{component}` may not call components of other programs");
+        if may(&own.reads) && may(&own.writes) || !self.told.insert(what.clone()) {
+            return None;
+        }
+        Some(format!(
+            "{what} over the network `{}` as user `{}`: that takes the right to all topics; write `reads *; writes *` \
+             in its `access`",
+            self.url, self.user
+        ))
+    }
+
     /// The router says what users may do. Gives what is to be told; `readers` are the components that read a topic.
     pub(super) fn hear(&mut self, granted: &Granted, readers: impl Fn(&str) -> Vec<String>) -> Vec<String> {
         let own = granted.users.iter().find(|one| one.user == self.user).cloned();

@@ -43,6 +43,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         reference: reference.to_owned(),
         interface: interface.to_owned(),
         targets: Vec::new(),
+        elsewhere: Box::default(),
     };
     let mut references = vec![wire("peer", "test.Echo"), wire("task", "unibg.robotics.tca.TaskInterface")];
     let mut values = Vec::new();

@@ -36,7 +36,7 @@ use crate::registry::{RegisteredClass, RegisteredLoop};
 pub struct Assembly {
     /// Every component; its place here is its index.
     pub components: Vec<ComponentSpec>,
-    /// The components that run in other programs; see [`Assembly::at`]. Nobody is wired to them.
+    /// The components that run in other programs; see [`Assembly::at`].
     pub elsewhere: Vec<ComponentSpec>,
     /// The node that this is the part of; empty for a whole fleet.
     pub node: SmolStr,
@@ -115,6 +115,21 @@ pub struct Wire {
     pub interface: String,
     /// The services it is wired to: at most one unless its class declares it as `many`.
     pub targets: Vec<WireTarget>,
+    /// Those of them that are in other programs, which follow them; see [`Assembly::at`].
+    pub elsewhere: Box<[RemoteTarget]>,
+}
+
+/// A service of a component of another program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RemoteTarget {
+    /// The provider: its path.
+    pub component: String,
+    /// The node that runs it.
+    pub node: SmolStr,
+    /// The service's name.
+    pub service: String,
+    /// True if it registers functions that stop hardware.
+    pub stops: bool,
 }
 
 /// A service of a component.

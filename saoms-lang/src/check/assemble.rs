@@ -73,6 +73,7 @@ pub(crate) fn assemble(
                     Some(WireTarget { component: indices[provider.member], service })
                 })
                 .collect(),
+            elsewhere: Box::default(),
         });
         components.push(ComponentSpec {
             path: member.path().to_owned(),

@@ -113,6 +113,7 @@ impl Networks {
                         user: settings.account.as_ref().map(|account| account.user.clone()),
                         grants: (!granted.is_empty()).then(|| Granted::of(&granted)),
                         readers: readers(assembly, &url),
+                        has_calls: assembly.calls_over(&url).next().is_some(),
                     };
                     let (components, others) = (components(assembly, &url), others(assembly, &url));
                     let router = described.router.as_ref();
@@ -267,25 +268,27 @@ impl Who<'_> {
     }
 }
 
-/// The components of this program that are on a network.
+/// The components of this program that are on a network, those among them that are called over it.
 fn components(assembly: &Assembly, url: &str) -> BTreeSet<String> {
-    on(&assembly.components, url).map(|spec| spec.path.clone()).collect()
+    let called = assembly.calls_over(url).filter(|(_, end)| end.node == assembly.node);
+    let called = called.map(|(_, end)| end.component.clone());
+    on(&assembly.components, url).map(|spec| spec.path.clone()).chain(called).collect()
 }
 
 /// The other nodes of the fleet that have components on a network.
 fn others(assembly: &Assembly, url: &str) -> BTreeSet<String> {
-    on(&assembly.elsewhere, url).map(|spec| spec.node.to_string()).collect()
+    let called = assembly.calls_over(url).map(|(_, end)| &end.node).filter(|node| **node != assembly.node);
+    on(&assembly.elsewhere, url).map(|spec| &spec.node).chain(called).map(ToString::to_string).collect()
 }
 
 fn on<'s>(specs: &'s [ComponentSpec], url: &str) -> impl Iterator<Item = &'s ComponentSpec> {
-    specs.iter().filter(move |spec| spec.task.as_ref().is_some_and(|task| task.url.as_deref() == Some(url)))
+    specs.iter().filter(move |spec| spec.url() == Some(url))
 }
 
 /// The components of a network that read each topic.
 fn readers(assembly: &Assembly, url: &str) -> BTreeMap<String, Vec<String>> {
     let mut readers: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    let is_on = |spec: &&ComponentSpec| spec.task.as_ref().is_some_and(|task| task.url.as_deref() == Some(url));
-    for spec in assembly.components.iter().filter(is_on) {
+    for spec in on(&assembly.components, url) {
         let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
         for topic in spec.class.declaration().subscribes.iter().chain(of_loops) {
             let known = readers.entry(spec.topic(&topic.name).into_owned()).or_default();

@@ -2,6 +2,7 @@
 
 mod access;
 mod broken;
+mod calls;
 mod certificates;
 mod errors;
 mod foreign;

@@ -221,8 +221,9 @@ impl Programs {
         }
     }
 
+    /// Waits until this is so.
     #[track_caller]
-    fn wait(&self, what: &str, is: impl Fn() -> bool) {
+    pub(super) fn wait(&self, what: &str, is: impl Fn() -> bool) {
         let begin = Instant::now();
         while !is() {
             assert!(begin.elapsed() < LONGEST, "{what}\n{}", self.printed());

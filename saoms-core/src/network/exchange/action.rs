@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::call::Outcome;
 use super::frame::Frame;
 use super::incoming::Arrived;
+use super::wire::Request;
 
 /// Settings of a program on a network.
 #[derive(Clone, Debug)]
@@ -36,6 +38,10 @@ pub enum Destination {
     Ask(u64),
     /// A program: a [`Covered`](super::wire::Covered).
     Covered(u64),
+    /// A program: a [`Request`].
+    Call(u64),
+    /// A program: a [`Reply`](super::wire::Reply).
+    Reply(u64),
 }
 
 /// What the program has to do.
@@ -63,6 +69,18 @@ pub enum Action {
         topic: Arc<str>,
         /// The message.
         arrived: Arrived,
+    },
+    /// Serve a call, or a heartbeat, of another program. A call is answered by
+    /// [`Exchange::reply`](super::Exchange::reply).
+    Serve(Request),
+    /// Give a call of this program its outcome.
+    Answered {
+        /// Its line.
+        line: u64,
+        /// Its number on this line.
+        number: u64,
+        /// What came of it.
+        outcome: Outcome,
     },
     /// Tell what happened.
     Tell(News),

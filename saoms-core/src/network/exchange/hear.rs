@@ -33,9 +33,11 @@ impl Exchange {
             self.unheard.remove(&alive.name);
             let name = Arc::from(alive.name.as_str());
             self.actions.push(Action::Tell(News::Joined { program, name }));
+            // Calls may wait for it, or for one before it.
+            self.calls_at = 0;
             self.say_soon();
         }
-        let peer = self.peers.entry(program).or_insert_with(|| Peer::new(&alive.name));
+        let peer = self.peers.entry(program).or_insert_with(|| Peer::new(&alive.name, now));
         if alive.number <= peer.sign {
             return;
         }
@@ -48,6 +50,7 @@ impl Exchange {
             }
         }
         if !std::mem::replace(&mut peer.is_reachable, true) {
+            self.calls_at = 0;
             let name = Arc::clone(&peer.name);
             self.actions.push(Action::Tell(News::Back { program, name }));
         }
@@ -120,6 +123,7 @@ impl Exchange {
 
     pub(super) fn sign_of_life(&mut self, leaves: bool) -> Alive {
         self.sign += 1;
+        self.note_sign();
         let sends = self.outgoing.iter().map(|(topic, outgoing)| Sends {
             topic: topic.to_string(),
             is_state: outgoing.is_state(),
@@ -153,6 +157,7 @@ impl Exchange {
             self.left.pop_first();
         }
         self.left.insert(program);
+        self.calls_at = 0;
         if let Some(peer) = self.peers.remove(&program) {
             self.was_done |= peer.vote == Vote::Done;
             for (topic, incoming) in &peer.incoming {

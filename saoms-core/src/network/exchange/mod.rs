@@ -9,8 +9,10 @@
 //! - Of a state topic a reader receives the newest message of each component and key, at first all that there are.
 //! - What is kept is bounded. Beyond the bound, programs that are away are given up first; then events are lost, and
 //!   both ends say so.
+//! - A [call](call) of a component of another program runs at most once.
 
 mod action;
+pub mod call;
 mod frame;
 mod hear;
 mod incoming;
@@ -20,12 +22,13 @@ mod peer;
 mod tests;
 pub mod wire;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 use std::sync::Arc;
 
 use saoms_api::host::cdr;
 
 pub use self::action::{Action, Destination, News, OwnMessage, Settings};
+use self::call::Line;
 use self::frame::ArrivedFrame;
 pub use self::frame::Frame;
 pub use self::incoming::Arrived;
@@ -92,6 +95,12 @@ pub struct Exchange {
     sign_at: u64,
     /// True if there is something to say since the last sign of life.
     has_news: bool,
+    /// The calls of this program, by their lines.
+    lines: BTreeMap<u64, Line>,
+    /// When something is due for them.
+    calls_at: u64,
+    /// The numbers of the newest signs of life, each with its time.
+    signs: VecDeque<(u64, u64)>,
     actions: Vec<Action>,
 }
 
@@ -113,6 +122,9 @@ impl Exchange {
             sign: 0,
             sign_at: 0,
             has_news: true,
+            lines: BTreeMap::new(),
+            calls_at: u64::MAX,
+            signs: VecDeque::new(),
             actions: Vec::new(),
         }
     }
@@ -228,7 +240,7 @@ impl Exchange {
     pub fn tick(&mut self, now: u64) -> u64 {
         self.pass(now);
         self.miss(now);
-        let mut next = self.ask(now);
+        let next = self.ask(now);
         if now >= self.sign_at {
             let alive = self.sign_of_life(false);
             self.put_alive(&alive);
@@ -236,8 +248,8 @@ impl Exchange {
             let is_busy = std::mem::take(&mut self.has_news) || !self.is_complete();
             self.sign_at = now + if is_busy { quiet.min(BUSY_INTERVAL) } else { quiet };
         }
-        next = next.min(self.sign_at);
-        next
+        self.pursue_calls();
+        next.min(self.sign_at).min(self.calls_at)
     }
 
     /// True if all other programs have received all events of this one, but for those that were missed for long.
@@ -389,6 +401,8 @@ impl Exchange {
         for (program, peer) in &mut self.peers {
             if peer.is_reachable && now.saturating_sub(peer.heard) > peer.patience {
                 peer.is_reachable = false;
+                // Calls may be for another one of its name.
+                self.calls_at = 0;
                 let of_program = self.owners.iter().filter(|(_, owner)| owner.program == *program);
                 let mut components: Vec<Arc<str>> =
                     of_program.map(|(component, _)| component.as_str().into()).collect();

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::call::Served;
 use super::incoming::Incoming;
 use super::wire::Vote;
 
@@ -15,7 +16,8 @@ pub(super) struct Peer {
     pub(super) name: Arc<str>,
     /// The number of its last sign of life.
     pub(super) sign: u64,
-    /// When it was heard last.
+    /// When it was heard first, and last.
+    pub(super) since: u64,
     pub(super) heard: u64,
     /// Time after which it is missed, in nanoseconds.
     pub(super) patience: u64,
@@ -29,6 +31,8 @@ pub(super) struct Peer {
     pub(super) incoming: BTreeMap<Arc<str>, Incoming>,
     /// The topics whose messages have another schema there.
     pub(super) differing: BTreeSet<Arc<str>>,
+    /// Its last call on each of its lines.
+    pub(super) served: BTreeMap<u64, Served>,
 }
 
 /// The state of a reader of a topic.
@@ -41,10 +45,11 @@ pub(super) struct Reading {
 }
 
 impl Peer {
-    pub(super) fn new(name: &str) -> Peer {
+    pub(super) fn new(name: &str, now: u64) -> Peer {
         Peer {
             name: Arc::from(name),
             sign: 0,
+            since: now,
             heard: 0,
             patience: 0,
             vote: Vote::Open,
@@ -53,6 +58,7 @@ impl Peer {
             reading: BTreeMap::new(),
             incoming: BTreeMap::new(),
             differing: BTreeSet::new(),
+            served: BTreeMap::new(),
         }
     }
 

@@ -165,3 +165,58 @@ pub struct Covered {
     /// Those that are not outdated, in order.
     pub numbers: Vec<u64>,
 }
+
+/// A call of an operation of a component, to the program that has it; or, with the number 0, a heartbeat for its
+/// hardware.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Request")]
+pub struct Request {
+    /// The program that calls.
+    pub program: u64,
+    /// The line of the call: a reference of a component of that program. Its calls are one after the other.
+    pub line: u64,
+    /// The number of the call on its line, from 1. A call that is put again keeps it.
+    pub number: u64,
+    /// The component that is called: its path.
+    pub component: String,
+    /// Its service.
+    pub service: String,
+    /// The number of the operation: its place in the interface, or [`STOP`].
+    pub operation: u32,
+    /// The hash of the interface.
+    pub interface: u64,
+    /// The component that calls: its path.
+    pub caller: String,
+    /// The record of the caller's journal with the reason; 0 is none.
+    pub cause: u64,
+    /// The number of the newest sign of life that the caller has of the program.
+    pub sign: u64,
+    /// The time since it came, in nanoseconds.
+    pub age: u64,
+    /// The time for which the caller still wants the call, in nanoseconds; of a heartbeat, that to the next one.
+    pub left: u64,
+    /// The arguments in CDR.
+    pub arguments: Vec<u8>,
+}
+
+/// The operation that stops the hardware of a component.
+pub const STOP: u32 = u32::MAX;
+
+/// The answer to a [`Request`].
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Reply")]
+pub struct Reply {
+    /// The program that answers.
+    pub program: u64,
+    /// The line of the call.
+    pub line: u64,
+    /// Its number.
+    pub number: u64,
+    /// What came of it: 0 a reply, 1 the component was busy, 2 it does not run, 3 it has no such operation, 4 it
+    /// failed.
+    pub outcome: u8,
+    /// Of all but a reply, the reason.
+    pub text: String,
+    /// The reply in CDR.
+    pub bytes: Vec<u8>,
+}

@@ -187,9 +187,11 @@ impl Engine {
         slot.renew(Arc::clone(&body.part.spec));
         body.part.period = slot.policy.period;
         slot.body = Some(body);
-        let heartbeats = self.heartbeats_of(number);
+        let (heartbeats, elsewhere) = (self.heartbeats_of(number), self.heartbeats_elsewhere(number));
         let slot = &mut self.slots[number as usize];
-        slot.body.iter_mut().for_each(|body| body.part.heartbeats.clone_from(&heartbeats));
+        if let Some(body) = &mut slot.body {
+            (body.part.heartbeats, body.part.heartbeats_elsewhere) = (heartbeats, elsewhere);
+        }
         slot.held = false;
         slot.statistics.replaced += 1;
         self.emit(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });

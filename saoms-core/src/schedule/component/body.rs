@@ -8,6 +8,7 @@ use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Time};
 use super::collection::Collection;
 use super::host::ComponentHost;
 use super::lasting::Lasting;
+use super::remote::{RemoteHeartbeat, Remotes};
 use super::spent::Spent;
 use super::stored::{Stored, StoredChange};
 use super::unheard::Unheard;
@@ -16,7 +17,7 @@ use crate::fault::TaskFault;
 use crate::journal::Recorder;
 use crate::schedule::engine::failing::Told;
 use crate::schedule::engine::votes::Ballot;
-use crate::schedule::order::OrderInCode;
+use crate::schedule::order::InCode;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
 use crate::status::{Description, named_values};
@@ -44,6 +45,9 @@ pub(crate) struct Part {
     pub(crate) stops: Vec<Arc<RegisteredStop>>,
     /// Components whose hardware hears of each of its executions.
     pub(crate) heartbeats: Vec<u32>,
+    /// The same of other programs, and what it calls there.
+    pub(crate) heartbeats_elsewhere: Option<Box<[RemoteHeartbeat]>>,
+    pub(crate) remotes: Option<Box<Remotes>>,
     pub(crate) publishers: Vec<TopicId>,
     /// Schemas of the topics on which messages were sent as bytes.
     pub(crate) schemas: Vec<(TopicId, Arc<Schema>)>,
@@ -81,14 +85,16 @@ pub(crate) struct Part {
     pub(crate) waits_for: Option<String>,
     /// Answer to the question what an operator wants to know.
     pub(crate) described: Option<Arc<Description>>,
-    /// The order that it carries out.
-    pub(crate) order: Option<Box<OrderInCode>>,
+    /// The order, or the call of another program, that it carries out.
+    pub(crate) order: Option<Box<InCode>>,
     /// In virtual time, the time at which the present code runs.
     pub(crate) now: u64,
     pub(crate) due: u64,
     pub(crate) execution: u64,
     pub(crate) period: u64,
     pub(crate) initializing: bool,
+    /// True in the shutdown at the end of the run.
+    pub(crate) is_ending: bool,
     /// True if a shutdown that finds another component busy is tried again.
     pub(crate) retries_shutdown: bool,
     /// The component whose code made the present execution fail, if that is another one.
@@ -134,7 +140,7 @@ impl Job {
             Job::Execute => "an execution",
             Job::React => "a reaction",
             Job::Ask | Job::Describe => "`status`",
-            Job::Order => "an order of an operator",
+            Job::Order => "an order of an operator, or a call of another program",
             Job::Shutdown => "`shutdown`",
         }
     }
@@ -153,6 +159,8 @@ impl Body {
             name,
             stops: Vec::new(),
             heartbeats: Vec::new(),
+            heartbeats_elsewhere: None,
+            remotes: None,
             publishers: Vec::new(),
             schemas: Vec::new(),
             subscriptions: Vec::new(),
@@ -182,6 +190,7 @@ impl Body {
             execution: 0,
             period,
             initializing: false,
+            is_ending: false,
             retries_shutdown: false,
             blamed: None,
             told: None,
@@ -239,6 +248,9 @@ impl Body {
             return result;
         }
         if result.is_ok() && job == Job::Execute && self.part.beats() {
+            let period = self.part.period;
+            let elsewhere = self.part.heartbeats_elsewhere.iter().flatten();
+            elsewhere.for_each(|hardware| hardware.beat(&self.part.name, period));
             let beaten = shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
             result = beaten.map_err(|(component, failure)| {
                 self.part.blamed = Some(component);
@@ -453,7 +465,7 @@ impl Part {
 
     /// True if hardware hears that it has executed.
     fn beats(&self) -> bool {
-        !self.heartbeats.is_empty() && !self.emergency.load(Ordering::Relaxed)
+        (!self.heartbeats.is_empty() || self.heartbeats_elsewhere.is_some()) && !self.emergency.load(Ordering::Relaxed)
     }
 
     pub(crate) fn is_cancelled(&self) -> bool {

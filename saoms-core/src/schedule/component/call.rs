@@ -5,6 +5,7 @@ use saoms_api::host::{Invocation, ServiceCall, cdr};
 use saoms_api::{CallError, Failure};
 
 use super::body::{Body, Job, Part};
+use super::remote::call_elsewhere;
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::engine::slot::NEVER;
@@ -17,7 +18,7 @@ const MAX_DEPTH: u32 = 64;
 /// thread, as in a function call: it is taken out of the engine meanwhile, and is busy for all others.
 pub(crate) fn call(
     shared: &Arc<Shared>,
-    caller: &Part,
+    caller: &mut Part,
     reference: u32,
     call: &mut dyn ServiceCall,
 ) -> Result<(), CallError> {
@@ -25,8 +26,13 @@ pub(crate) fn call(
     let Some(wire) = caller.spec.references.get(place as usize) else {
         return Err(CallError::NotWired { reference: "(a handle that `Context::reference` did not give)".to_owned() });
     };
-    let Some(target) = wire.targets.get((reference >> TARGET_SHIFT) as usize) else {
-        return Err(CallError::NotWired { reference: wire.reference.clone() });
+    let number = (reference >> TARGET_SHIFT) as usize;
+    let Some(target) = wire.targets.get(number) else {
+        let Some(target) = wire.elsewhere.get(number - wire.targets.len()) else {
+            return Err(CallError::NotWired { reference: wire.reference.clone() });
+        };
+        let (wire, target) = (wire.clone(), target.clone());
+        return call_elsewhere(shared, caller, (&wire, &target), reference, call);
     };
     let provider = target.component as u32;
     let mut engine = shared.lock();

@@ -343,12 +343,13 @@ impl Host for ComponentHost<'_> {
     }
 
     fn is_wired(&self, reference: u32) -> bool {
-        self.wire(reference).is_some_and(|wire| wire.targets.len() > (reference >> TARGET_SHIFT) as usize)
+        self.wire(reference)
+            .is_some_and(|wire| wire.targets.len() + wire.elsewhere.len() > (reference >> TARGET_SHIFT) as usize)
     }
 
     fn targets(&self, reference: u32) -> u32 {
         // No real fleet has more targets than a handle can address.
-        self.wire(reference).map_or(0, |wire| wire.targets.len().min(MOST_TARGETS)) as u32
+        self.wire(reference).map_or(0, |wire| (wire.targets.len() + wire.elsewhere.len()).min(MOST_TARGETS)) as u32
     }
 
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {

@@ -8,6 +8,7 @@ mod declared;
 mod host;
 pub(super) mod lasting;
 pub(super) mod library;
+pub(super) mod remote;
 pub(super) mod spent;
 pub(super) mod stored;
 mod unheard;

@@ -33,24 +33,26 @@ pub(super) fn work(shared: &Arc<Shared>) {
             continue;
         };
         let started = shared.clock.now();
+        let has_order = engine.has_order_for(index, started);
         let slot = &mut engine.slots[index as usize];
         slot.queued = false;
         if slot.body.is_none() {
             slot.waiting = true;
             continue;
         }
+        let order = has_order.then_some(Job::Order);
         let question = match (slot.asked, slot.asked_to_wait) {
             (true, _) => Some(Job::Describe),
             (false, true) => Some(Job::Ask),
             (false, false) => None,
         };
         let question = question.filter(|_| slot.state == SlotState::Active);
-        if question.is_none() {
+        if order.is_none() && question.is_none() {
             // One that starts or leaves has nothing to say.
             engine.note_answer(index);
             engine.note_waiting(index);
         }
-        let Some(job) = question.or_else(|| engine.job(index, started)) else { continue };
+        let Some(job) = order.or(question).or_else(|| engine.job(index, started)) else { continue };
         let Some(mut body) = engine.begin(index, job, started) else { continue };
         shared.release(engine);
         let result = body.perform(shared, job);

@@ -82,6 +82,7 @@ impl Engine {
             Job::Shutdown => {
                 body.part.due = now;
                 // At the end of a run no code runs any more that could become free, unless that of another component.
+                body.part.is_ending = self.phase == RunPhase::Stopping;
                 body.part.retries_shutdown = self.phase != RunPhase::Stopping || self.out > 1;
             }
             Job::Ask | Job::Describe => {}
@@ -96,7 +97,13 @@ impl Engine {
                 body.part.execution = 0;
                 body.part.lasting.saves = slot.policy.restarts > 0 && slot.spec.class.declaration().saves;
                 body.part.heartbeats = self.heartbeats_of(index);
-                if !body.part.heartbeats.is_empty() && !self.with_hardware.contains(&index) {
+                body.part.heartbeats_elsewhere = self.heartbeats_elsewhere(index);
+                if body.part.heartbeats_elsewhere.is_some() {
+                    // It may hang while hardware of another program moves.
+                    self.stops.watch();
+                }
+                let has_hardware = !body.part.heartbeats.is_empty() || body.part.heartbeats_elsewhere.is_some();
+                if has_hardware && !self.with_hardware.contains(&index) {
                     self.with_hardware.push(index);
                 }
             }

@@ -263,7 +263,13 @@ impl Engine {
                     // One comparison in most executions.
                     if now >= self.look_at {
                         if let Some(index) = self.next_order(now) {
-                            return Next::Run(index, Job::Order);
+                            let slot = &mut self.slots[index as usize];
+                            if !slot.isolation.always {
+                                return Next::Run(index, Job::Order);
+                            }
+                            slot.queued = true;
+                            self.roles.work.push_back(index);
+                            return Next::HandOver;
                         }
                         if self.deliver_due(now) {
                             continue;

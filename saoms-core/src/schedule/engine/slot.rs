@@ -346,4 +346,9 @@ impl Slot {
     pub(crate) fn is_alive(&self) -> bool {
         matches!(self.state, SlotState::Active | SlotState::Leaving)
     }
+
+    /// True if it carries out orders, and serves calls of other programs.
+    pub(crate) fn carries_out(&self) -> bool {
+        self.state == SlotState::Active
+    }
 }

@@ -57,7 +57,7 @@ impl Elsewhere {
     }
 
     /// The record that a message follows from, as the component with this number says it.
-    pub(super) fn cause(&self, sender: u32, record: u64) -> Cause {
+    pub(in crate::schedule) fn cause(&self, sender: u32, record: u64) -> Cause {
         let Some((part, known)) = self.part.as_ref().zip(self.known.get(&sender)) else { return Cause::default() };
         let place = |name: &str| part.nodes.iter().position(|node| node == name);
         match node_of(Cause(record)) {

@@ -1,6 +1,7 @@
 //! The networks that components of the fleet are on: their messages leave the program, and those of other programs come
 //! to the topics of this one.
 
+mod calls;
 pub(super) mod elsewhere;
 
 use std::collections::{HashMap, VecDeque};
@@ -19,9 +20,10 @@ use super::inject::{OUTSIDE, OUTSIDE_NAME};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::hash::text_hash;
-use crate::network::exchange::wire::Vote;
+use crate::network::exchange::wire::{Request, Vote};
 use crate::network::{Fleet, FromNetwork, FromRun, Port};
 use crate::observe::{Notification, SentMessage};
+pub(super) use calls::interface_hash;
 use elsewhere::Elsewhere;
 
 /// The network of a component that is on none.
@@ -46,9 +48,13 @@ pub(super) struct Networks {
 impl Networks {
     /// The number of the network of a component.
     pub(super) fn of(&self, spec: &ComponentSpec) -> u8 {
-        let url = spec.task.as_ref().and_then(|task| task.url.as_deref());
-        let place = url.and_then(|url| self.all.iter().position(|(known, _)| known == url));
+        let place = spec.url().and_then(|url| self.all.iter().position(|(known, _)| known == url));
         place.and_then(|place| u8::try_from(place).ok()).unwrap_or(NO_NETWORK)
+    }
+
+    /// Where messages for a network are left.
+    pub(super) fn port(&self, network: u8) -> Option<Arc<Port>> {
+        self.all.get(usize::from(network)).map(|(_, port)| Arc::clone(port))
     }
 
     /// True if the programs of all networks agree that no work is left, also where there is no network.
@@ -196,6 +202,24 @@ impl Fleet for NetworkedFleet {
             engine.send(topic, message, now);
         }
         shared.release(engine);
+    }
+
+    fn serve(&self, request: Request) {
+        let mut engine = self.shared.lock();
+        let beaten = engine.serve(u8::try_from(self.network).unwrap_or(NO_NETWORK), request, self.shared.clock.now());
+        self.shared.release(engine);
+        if let Some((component, period)) = beaten
+            && let Err((_, failure)) = self.shared.stops.beat(&[component], period)
+        {
+            // Its hardware stops by itself.
+            self.shared.note(Level::Error, failure.to_string());
+        }
+    }
+
+    fn misses(&self, program: &str) {
+        let mut engine = self.shared.lock();
+        engine.stop_hardware_for(program);
+        self.shared.release(engine);
     }
 
     fn vote(&self) -> Vote {

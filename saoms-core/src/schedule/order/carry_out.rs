@@ -6,18 +6,19 @@ use std::sync::Arc;
 
 use saoms_api::host::Invocation;
 use saoms_api::host::contain::contained;
-use saoms_api::{Cause, Failure, Level, Time};
+use saoms_api::{CallError, Cause, Failure, Level, Time};
 use saoms_lang::assembly::ComponentSpec;
 use serde_json::Value;
 
 use super::call::JsonCall;
+use super::remote::RemoteCall;
 use super::ticket::{Answering, OrderTicket, ticket};
 use super::{Order, OrderError};
 use crate::observe::Occurrence;
 use crate::schedule::change::{self, SetError};
 use crate::schedule::component::body::Body;
 use crate::schedule::engine::lifecycle::Request;
-use crate::schedule::engine::slot::{NEVER, SlotState};
+use crate::schedule::engine::slot::NEVER;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::inject::{self, InjectedContent, Injection, OUTSIDE_NAME};
 use crate::schedule::settings::nanos;
@@ -37,7 +38,32 @@ pub(crate) struct PendingOrder {
 /// Orders that wait for a component whose code runs, in the order in which they came.
 #[derive(Debug, Default)]
 pub(crate) struct PendingOrders {
-    waiting: VecDeque<(u32, Box<PendingOrder>)>,
+    waiting: VecDeque<(u32, Pending)>,
+}
+
+/// What waits for a component.
+#[derive(Debug)]
+enum Pending {
+    Order(Box<PendingOrder>),
+    /// A call of another program.
+    Call(Box<RemoteCall>),
+}
+
+impl Pending {
+    /// True if nobody wants it any more.
+    fn is_cancelled(&self, now: u64) -> bool {
+        match self {
+            Pending::Order(order) => order.is_cancelled(),
+            Pending::Call(call) => call.is_late(now),
+        }
+    }
+}
+
+/// What a component carries out itself.
+pub(crate) enum InCode {
+    Order(OrderInCode),
+    /// A call of another program, and the record that it follows from.
+    Call(RemoteCall, Cause),
 }
 
 /// An order that a component carries out itself: what its code gets, and its answer.
@@ -152,7 +178,14 @@ impl Engine {
         let component = self.slots[index as usize].name.to_string();
         let order = Order::Set { component, property: STOPPED.to_owned(), value: is_stopped.to_string() };
         let pending = PendingOrder { order, answering: None, part_of: Some(cause) };
-        self.orders.waiting.push_back((index, Box::new(pending)));
+        self.orders.waiting.push_back((index, Pending::Order(Box::new(pending))));
+    }
+
+    /// Has a component serve a call of another program, between two executions.
+    pub(in crate::schedule) fn queue_call(&mut self, index: u32, call: RemoteCall) {
+        self.orders.waiting.push_back((index, Pending::Call(Box::new(call))));
+        self.look_at = 0;
+        self.wake |= self.roles.asleep_until != 0;
     }
 
     /// The component of this path, which may have the name of a service behind it.
@@ -194,7 +227,7 @@ impl Engine {
             Order::Stop { component } => (component, Request::Unschedule),
             Order::Set { component, .. } | Order::Call { component, .. } => {
                 match self.provider(component) {
-                    Ok((number, _)) => self.orders.waiting.push_back((number, Box::new(pending))),
+                    Ok((number, _)) => self.orders.waiting.push_back((number, Pending::Order(Box::new(pending)))),
                     Err(error) => self.answer(when, &pending.order, pending.answering, Err(error)),
                 }
                 return;
@@ -231,6 +264,13 @@ impl Engine {
         }
     }
 
+    /// True if an order waits for this component, which runs on a worker thread.
+    pub(in crate::schedule) fn has_order_for(&self, index: u32, now: u64) -> bool {
+        self.has_orders()
+            && self.slots[index as usize].carries_out()
+            && self.orders.waiting.iter().any(|(waiting, pending)| *waiting == index && !pending.is_cancelled(now))
+    }
+
     /// True if an order waits for a component.
     #[inline]
     pub(in crate::schedule) fn has_orders(&self) -> bool {
@@ -248,20 +288,30 @@ impl Engine {
         let mut place = 0;
         while let Some((index, pending)) = self.orders.waiting.get(place) {
             let (index, slot) = (*index, &self.slots[*index as usize]);
-            let is_over = pending.is_cancelled();
-            if !is_over && (slot.body.is_none() || slot.held) {
+            let is_over = pending.is_cancelled(now);
+            if !is_over && (slot.body.is_none() || slot.held || slot.queued) {
                 place += 1;
                 continue;
             }
-            let is_ready = slot.is_alive() && !matches!(slot.state, SlotState::Starting | SlotState::Leaving);
-            if is_ready && !is_over {
+            if slot.carries_out() && !is_over {
                 return Some(index);
             }
             if let Some((_, pending)) = self.orders.waiting.remove(place) {
                 if is_over {
                     // It was withdrawn, and whoever gave it knows that.
+                    if let Pending::Call(call) = pending {
+                        self.leave_unserved(&call);
+                    }
                     continue;
                 }
+                let pending = match pending {
+                    Pending::Order(pending) => *pending,
+                    Pending::Call(call) => {
+                        let provider = self.slots[index as usize].name.to_string();
+                        self.reply_to(&call, Err(CallError::NotRunning { provider }));
+                        continue;
+                    }
+                };
                 if let (Some(_), Order::Set { property, value, .. }) = (pending.part_of, &pending.order) {
                     self.set_at_rest(index, property, value);
                     continue;
@@ -275,9 +325,17 @@ impl Engine {
 
     /// Gives a component's body the order that it carries out.
     pub(in crate::schedule) fn begin_order(&mut self, index: u32, body: &mut Body, now: u64) {
-        let Some(place) = self.orders.waiting.iter().position(|(waiting, _)| *waiting == index) else { return };
+        let is_wanted = |(waiting, pending): &(u32, Pending)| *waiting == index && !pending.is_cancelled(now);
+        let Some(place) = self.orders.waiting.iter().position(is_wanted) else { return };
         let Some((_, pending)) = self.orders.waiting.remove(place) else { return };
-        let PendingOrder { order, answering, part_of } = *pending;
+        let PendingOrder { order, answering, part_of } = match pending {
+            Pending::Order(pending) => *pending,
+            Pending::Call(call) => {
+                let cause = self.cause_of(&call);
+                body.part.order = Some(Box::new(InCode::Call(*call, cause)));
+                return;
+            }
+        };
         let work = match &order {
             Order::Set { component, .. } | Order::Call { component, .. } => {
                 self.provider(component).and_then(|(number, service)| self.work(&order, number, service))
@@ -287,8 +345,8 @@ impl Engine {
         match work {
             Ok(work) => {
                 let cause = part_of.unwrap_or_else(|| self.record_outside(now, OUTSIDE_NAME, order.to_string()));
-                body.part.order =
-                    Some(Box::new(OrderInCode { order, answering, cause, work: Some(work), answer: None }));
+                let order = OrderInCode { order, answering, cause, work: Some(work), answer: None };
+                body.part.order = Some(Box::new(InCode::Order(order)));
             }
             Err(error) => self.answer(now, &order, answering, Err(error)),
         }
@@ -302,7 +360,11 @@ impl Engine {
         failure: Option<&Failure>,
         now: u64,
     ) {
-        let Some(order) = body.part.order.take() else { return };
+        let order = match body.part.order.take().map(|order| *order) {
+            Some(InCode::Order(order)) => order,
+            Some(InCode::Call(call, _)) => return self.finish_remote_call(index, call, failure),
+            None => return,
+        };
         let slot = &mut self.slots[index as usize];
         let answer = match (order.answer, failure) {
             (Some(answer), _) => answer,
@@ -311,7 +373,7 @@ impl Engine {
         };
         // It may have another value of a property.
         slot.spec = Arc::clone(&body.part.spec);
-        let OrderInCode { order, answering, .. } = *order;
+        let OrderInCode { order, answering, .. } = order;
         self.answer(now, &order, answering, answer);
     }
 }
@@ -332,14 +394,22 @@ impl Body {
     /// # Errors
     /// The component panicked in a call.
     pub(in crate::schedule) fn carry_out(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
-        let Some(mut order) = self.part.order.take() else { return Ok(()) };
+        let mut order = match self.part.order.take().map(|order| *order) {
+            Some(InCode::Order(order)) => order,
+            Some(InCode::Call(mut call, cause)) => {
+                let served = self.serve_remote(shared, &mut call, cause);
+                self.part.order = Some(Box::new(InCode::Call(call, cause)));
+                return served;
+            }
+            None => return Ok(()),
+        };
         let answer = match order.work.take() {
             Some(Work::Set(changed)) => Ok(self.update(*changed).map_err(OrderError::Set)),
             Some(Work::Call(call)) => self.answer(shared, call, order.cause),
-            None => return Ok(()),
+            None => Ok(Ok(Value::Null)),
         };
         let result = answer.map(|answer| order.answer = Some(answer));
-        self.part.order = Some(order);
+        self.part.order = Some(Box::new(InCode::Order(order)));
         result
     }
 

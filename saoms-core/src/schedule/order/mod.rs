@@ -5,6 +5,7 @@ mod call;
 mod carry_out;
 mod error;
 mod read;
+mod remote;
 mod ticket;
 
 use std::fmt;
@@ -13,9 +14,10 @@ use std::time::Duration;
 use saoms_api::host::format_duration;
 use serde_json::Value;
 
-pub(super) use carry_out::{OrderInCode, PendingOrder, PendingOrders, accept};
+pub(super) use carry_out::{InCode, PendingOrder, PendingOrders, accept};
 pub use error::OrderError;
 pub use read::TimedOrder;
+pub(super) use remote::RemoteCall;
 pub use ticket::OrderTicket;
 
 /// An order of an operator to a running fleet. [`Order::read`] reads what [`Display`](fmt::Display) writes.

@@ -37,7 +37,9 @@ impl Engine {
         }
         let moves = |index: &u32| {
             let slot = &self.slots[*index as usize];
-            slot.is_member() && slot.policy.periodic && (slot.hears_stops || !self.heartbeats_of(*index).is_empty())
+            slot.is_member()
+                && slot.policy.periodic
+                && (slot.hears_stops || !self.heartbeats_of(*index).is_empty() || self.moves_elsewhere(*index))
         };
         Ok((0..self.slots.len() as u32).filter(moves).collect())
     }

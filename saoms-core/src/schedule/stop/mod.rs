@@ -215,8 +215,9 @@ impl Engine {
         all
     }
 
-    /// Stops the hardware of passive components that only this one uses.
+    /// Stops the hardware of passive components that only this one uses, and that of other programs.
     pub(crate) fn stop_its_hardware(&mut self, index: u32) {
+        self.stop_hardware_elsewhere(index);
         if !self.stops.any() {
             return;
         }

@@ -34,7 +34,7 @@ pub(crate) fn check(
     if wrong.is_empty() {
         nowhere(fleet, report);
     }
-    wires::check(fleet, wiring, report);
+    wires::check(fleet, checks, wiring, report);
     topics::check(fleet, checks, report);
 }
 

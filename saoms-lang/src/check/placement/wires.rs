@@ -1,25 +1,37 @@
-//! Rule: a wire stays within a node.
+//! Rule: a wire between nodes is one over which components can call.
+
+use saoms_api::extension::RemoteProxy;
 
 use super::place;
-use crate::check::fleet::Fleet;
+use crate::check::component::ComponentCheck;
+use crate::check::contracts::offer::Provider;
+use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
 use crate::check::wiring::Wiring;
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::registry::ReferenceDeclaration;
 
-/// Reports wires between components of different nodes: a call does not leave its program.
-pub(super) fn check(fleet: &Fleet<'_>, wiring: &Wiring, report: &mut Report<'_>) {
+/// Reports wires between components of different nodes that cannot be called over.
+pub(super) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], wiring: &Wiring, report: &mut Report<'_>) {
     for (caller, references) in wiring.iter().enumerate() {
         let (member, Some(class)) = (&fleet.members[caller], fleet.class_of(caller)) else { continue };
         report.about(member);
         for (declared, targets) in class.references.iter().zip(references) {
-            let providers = targets.iter().flatten().map(|provider| &fleet.members[provider.member]);
-            let mut apart = providers
-                .filter(|other| other.node != member.node && !other.node.is_empty() && !member.node.is_empty());
-            let Some(other) = apart.next() else { continue };
+            let is_apart = |provider: &&Provider| {
+                let other = &fleet.members[provider.member];
+                other.node != member.node && !other.node.is_empty() && !member.node.is_empty()
+            };
+            let mut apart = targets.iter().flatten().filter(is_apart);
+            let Some((provider, (why, help))) =
+                apart.find_map(|provider| Some((provider, refusal(fleet, checks, caller, declared, provider)?)))
+            else {
+                continue;
+            };
+            let other = &fleet.members[provider.member];
             let written = member.component.reference(&declared.name);
             let at = written.map_or(member.component.name.location, |one| one.name.location);
             let message = format!(
-                "{} is in node {}, and its reference {} leads to {} in node {}: calls stay within a program",
+                "{} is in node {}, and its reference {} leads to {} in node {}: {why}",
                 quoted(member.path()),
                 quoted(&member.node),
                 quoted(&declared.name),
@@ -27,11 +39,59 @@ pub(super) fn check(fleet: &Fleet<'_>, wiring: &Wiring, report: &mut Report<'_>)
                 quoted(&other.node)
             );
             let one = Diagnostic::new(&codes::WIRE_BETWEEN_NODES, at, message);
-            let one = one.label(place(fleet, other), "the node of its target");
-            report.push(
-                one.help("put both into one node: components of different nodes exchange messages of topics alone"),
-            );
+            report.push(one.label(place(fleet, other), "the node of its target").help(help));
         }
     }
     report.about_all();
+}
+
+/// Why a component cannot call one of another node, and what to do.
+fn refusal(
+    fleet: &Fleet<'_>,
+    checks: &[ComponentCheck<'_>],
+    caller: usize,
+    declared: &ReferenceDeclaration,
+    provider: &Provider,
+) -> Option<(String, String)> {
+    let (class, other) = (fleet.class_of(caller)?, fleet.class_of(provider.member)?);
+    let url = |member: usize| checks[member].task.as_ref().and_then(|task| task.url.as_deref());
+    let (own, theirs) = (url(caller), url(provider.member));
+    let together = || "put both into one node".to_owned();
+    if other.services[provider.service].is_of_host() {
+        return Some(("the tasks of other programs cannot be scheduled".to_owned(), together()));
+    }
+    if !class.class.declaration().apart && RemoteProxy::of(&declared.interface.name).is_none() {
+        let name = quoted(class.class.name());
+        return Some((
+            format!("a call between programs waits for its answer, and class {name} is not `apart`"),
+            "put both into one node, or call from a class that declares `apart`: components of different nodes also \
+             exchange messages of topics"
+                .to_owned(),
+        ));
+    }
+    // What is wrong with its properties is told.
+    if !checks[caller].is_sound() || !checks[provider.member].is_sound() {
+        return None;
+    }
+    match (own, theirs) {
+        (Some(own), Some(theirs)) if own != theirs => Some((
+            format!("their `url` is {} and {}, which are two networks", quoted(own), quoted(theirs)),
+            "give both the same text: a network is named by it".to_owned(),
+        )),
+        (None, _) => {
+            let member: &Member<'_> = &fleet.members[caller];
+            let address = theirs.map_or_else(
+                || "the address of a message broker, such as `localhost:61616`".to_owned(),
+                |url| format!("the value {}", quoted(url)),
+            );
+            Some(match checks[caller].task.is_some() {
+                true => (
+                    format!("{} has no `url`, over which it could call", quoted(member.path())),
+                    format!("give it the property `url` with {address}"),
+                ),
+                false => ("a passive component has no `url`, over which it could call".to_owned(), together()),
+            })
+        }
+        _ => None,
+    }
 }

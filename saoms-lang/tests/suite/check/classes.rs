@@ -10,6 +10,13 @@ use saoms_api::{
 };
 use saoms_lang::registry::Registry;
 
+/// All of them, and one that waits for answers.
+pub(crate) fn with_surveyor() -> Registry {
+    let mut registry = registry();
+    registry.add(Registration::of::<Surveyor>()).unwrap();
+    registry
+}
+
 /// All of them.
 pub(crate) fn registry() -> Registry {
     let mut registry = Registry::new();
@@ -192,6 +199,19 @@ pub(crate) struct Gps;
 
 component!(Gps, ());
 offers!(Gps, Positions, position() -> i32);
+
+/// Waits for answers.
+#[derive(Class)]
+#[class(
+    name = "example.Surveyor",
+    periodic,
+    apart,
+    reference("gps": Positions),
+    reference("task": TaskInterface, optional)
+)]
+pub(crate) struct Surveyor;
+
+component!(Surveyor, ());
 
 #[derive(Class)]
 #[class(name = "example.OldGps", passive, service("position": OldPositions))]

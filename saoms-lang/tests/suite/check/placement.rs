@@ -4,7 +4,7 @@ use saoms_lang::assembly::Assembly;
 use saoms_lang::project::Project;
 use saoms_tools::expand::expanded;
 
-use super::classes::registry;
+use super::classes::{registry, with_surveyor};
 use super::support::{compiled, part, run, told};
 
 const OWN: &str = "xmlns:s=\"urn:saoms:1\"";
@@ -79,6 +79,72 @@ fn a_part_knows_the_components_of_other_nodes() {
     assert_eq!(gate.components[0].references[0].targets[0].component, 1);
     assert_eq!((gate.node.as_str(), gate.elsewhere[0].path.as_str()), ("gate", "Clock"));
     assert_eq!(gate.nodes().len(), 2);
+}
+
+/// A fleet that has a surveyor, as it is compiled, and what is told of it.
+#[track_caller]
+fn surveyed(inside: &str) -> (Option<Assembly>, String) {
+    let project = Project::new().in_memory().text("fleet.composite", part("fleet", DEFAULT, inside));
+    let whole = project.compile(&with_surveyor());
+    let text = told(&whole.diagnostics, &whole.sources);
+    (whole.output, text)
+}
+
+fn surveyor(url: &str, more: &str) -> String {
+    let wired = format!("<reference name=\"gps\" target=\"Gps\"/>{more}</component>");
+    let one = picker("Surveyor", "s:node=\"gate\"", url).replace("example.Picker", "example.Surveyor");
+    one.replace("</component>", &wired)
+}
+
+#[test]
+fn a_part_knows_the_services_of_other_nodes_that_it_calls() {
+    let outer = surveyor("localhost:61616", "") + &gps("Gps", "");
+    let (assembly, told) = surveyed(&outer);
+    assert_eq!(told, "");
+    for (node, [here, elsewhere]) in [("gate", ["Surveyor", "Gps"]), ("control", ["Gps", "Surveyor"])] {
+        let part = assembly.clone().unwrap().at(node);
+        assert_eq!((part.components[0].path.as_str(), part.elsewhere[0].path.as_str()), (here, elsewhere));
+        let calls: Vec<_> = part.calls_over("localhost:61616").collect();
+        let [(caller, end)] = calls[..] else { panic!("{calls:?}") };
+        assert_eq!(
+            (caller.path.as_str(), end.component.as_str(), end.service.as_str()),
+            ("Surveyor", "Gps", "position")
+        );
+        assert_eq!((end.node.as_str(), caller.references[0].targets.len()), ("control", 0));
+    }
+    // In one program it is a wire as any other.
+    assert_eq!(assembly.unwrap().calls_over("localhost:61616").count(), 0);
+}
+
+#[test]
+fn a_cycle_of_calls_over_nodes_is_found() {
+    let wired = |name: &str, node: &str, to: &str| {
+        let reference = format!("<reference name=\"other\" target=\"{to}\"/></component>");
+        gps(name, &format!("s:node=\"{node}\"")).replace("</component>", &reference)
+    };
+    let told = faults(OWN, &(wired("One", "gate", "Other") + &wired("Other", "control", "One")), None);
+    assert!(told.contains("S2020: components call each other in a cycle: `One` -> `Other` -> `One`"), "{told}");
+}
+
+#[test]
+fn a_component_calls_another_node_over_its_network() {
+    expect_test::expect![[r#"
+        2:184-187 error S2065: `Surveyor` is in node `gate`, and its reference `gps` leads to `Gps` in node `control`: `Surveyor` has no `url`, over which it could call
+          3:18-21 the node of its target
+          help: give it the property `url` with the address of a message broker, such as `localhost:61616`
+    "#]].assert_eq(&surveyed(&(surveyor("", "") + &gps("Gps", ""))).1);
+    let robot = |url: &str| {
+        let one = picker("Robot", "", url).replace("example.Picker", "example.Robot");
+        one.replace("<property name=\"period\">", "<property name=\"number\">1</property><property name=\"period\">")
+    };
+    let task = "<reference name=\"task\" target=\"Robot/TaskInterface\"/>";
+    let near = gps("Gps", "s:node=\"gate\"");
+    expect_test::expect![[r#"
+        2:267-271 error S2065: `Surveyor` is in node `gate`, and its reference `task` leads to `Robot` in node `control`: the tasks of other programs cannot be scheduled
+          4:18-23 the node of its target
+          help: put both into one node
+    "#]]
+        .assert_eq(&surveyed(&(surveyor("localhost:61616", task) + &near + &robot("localhost:61616"))).1);
 }
 
 #[track_caller]

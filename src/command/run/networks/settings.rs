@@ -8,7 +8,7 @@ use saoms_api::Secret;
 use saoms_api::extension::{Access, Router, RouterClass, TlsPaths};
 use saoms_core::network::key;
 use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport};
-use saoms_lang::assembly::{Assembly, TaskProperties};
+use saoms_lang::assembly::{Assembly, ComponentSpec, RemoteTarget, TaskProperties};
 use saoms_lang::diagnostic::{Diagnostic, codes};
 
 use super::private;
@@ -29,7 +29,8 @@ pub(super) struct Described {
     first: usize,
 }
 
-/// The networks of an assembly, by their urls.
+/// The networks of an assembly, by their urls. A component that is called over one, and may be on none itself, is where
+/// those are that call it, and as they say. Components are numbered as in [`Assembly::all`].
 pub(super) fn described(assembly: &Assembly) -> BTreeMap<String, Described> {
     let mut all: BTreeMap<String, Described> = BTreeMap::new();
     for (index, spec) in assembly.components.iter().enumerate() {
@@ -39,9 +40,11 @@ pub(super) fn described(assembly: &Assembly) -> BTreeMap<String, Described> {
             known.router.get_or_insert((index, router));
         }
     }
-    for (index, task) in
-        assembly.components.iter().enumerate().filter_map(|(index, spec)| Some((index, spec.task.as_ref()?)))
-    {
+    let is_here = |end: &RemoteTarget| end.node == assembly.node;
+    let calls = |spec: &ComponentSpec| spec.references.iter().flat_map(|wire| &wire.elsewhere).any(is_here);
+    for (index, spec) in assembly.all().enumerate() {
+        let is_on = index < assembly.components.len() || calls(spec);
+        let Some(task) = spec.task.as_ref().filter(|_| is_on) else { continue };
         let Some(url) = &task.url else { continue };
         let known = all.entry(url.clone()).or_insert_with(|| Described { first: index, ..Described::default() });
         known.add(index, task);
@@ -129,13 +132,13 @@ impl Resolver<'_> {
     }
 
     fn has(&self, component: usize, property: &str) -> bool {
-        let path = &self.assembly.components[component].path;
-        self.assembly.networks.get(path, property) != self.assembly.networks.get(path, "")
+        let Some(spec) = self.assembly.all().nth(component) else { return false };
+        self.assembly.networks.get(&spec.path, property) != self.assembly.networks.get(&spec.path, "")
     }
 
     /// Notes what is wrong with a property of a component.
     fn fault(&mut self, component: usize, property: &str, text: &str) {
-        let path = &self.assembly.components[component].path;
+        let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(component) else { return };
         let Some(place) = self.assembly.networks.get(path, property) else { return };
         let message = format!("component `{path}`, property `{property}`: {text}");
         let one = Diagnostic::new(&codes::NETWORK_FILE, place, message);

@@ -5,40 +5,41 @@ use std::sync::Arc;
 
 use saoms_api::host::cdr;
 
+use crate::network::exchange::call::{Outcome, OwnCall};
 use crate::network::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
 
-pub(super) const MILLISECOND: u64 = 1_000_000;
+pub(in crate::network::exchange) const MILLISECOND: u64 = 1_000_000;
 
 /// What the network does to what it carries.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Weather {
+pub(in crate::network::exchange) struct Weather {
     /// Percent that it loses.
-    pub(super) loss: u32,
+    pub(in crate::network::exchange) loss: u32,
     /// Percent that it carries twice.
-    pub(super) repeats: u32,
+    pub(in crate::network::exchange) repeats: u32,
     /// Greatest delay in milliseconds.
-    pub(super) jitter: u64,
+    pub(in crate::network::exchange) jitter: u64,
 }
 
 impl Weather {
-    pub(super) fn calm() -> Weather {
+    pub(in crate::network::exchange) fn calm() -> Weather {
         Weather { loss: 0, repeats: 0, jitter: 0 }
     }
 }
 
 /// A message that reached a program.
 #[derive(Clone, Debug)]
-pub(super) struct Delivered {
-    pub(super) sender: usize,
-    pub(super) reader: usize,
-    pub(super) topic: Arc<str>,
-    pub(super) key: Option<u64>,
-    pub(super) number: u64,
+pub(in crate::network::exchange) struct Delivered {
+    pub(in crate::network::exchange) sender: usize,
+    pub(in crate::network::exchange) reader: usize,
+    pub(in crate::network::exchange) topic: Arc<str>,
+    pub(in crate::network::exchange) key: Option<u64>,
+    pub(in crate::network::exchange) number: u64,
 }
 
-pub(super) struct Program {
-    pub(super) exchange: Exchange,
-    pub(super) is_stopped: bool,
+pub(in crate::network::exchange) struct Program {
+    pub(in crate::network::exchange) exchange: Exchange,
+    pub(in crate::network::exchange) is_stopped: bool,
     component: Arc<str>,
     sent: BTreeMap<String, u64>,
     told: Vec<String>,
@@ -46,10 +47,20 @@ pub(super) struct Program {
 
 type Packet = (usize, Destination, Arc<[u8]>, Option<Arc<[u8]>>);
 
-pub(super) struct Lossy {
-    pub(super) programs: Vec<Program>,
-    pub(super) delivered: Vec<Delivered>,
-    pub(super) is_cut: bool,
+pub(in crate::network::exchange) struct Lossy {
+    pub(in crate::network::exchange) programs: Vec<Program>,
+    pub(in crate::network::exchange) delivered: Vec<Delivered>,
+    pub(in crate::network::exchange) is_cut: bool,
+    /// Calls that ran: the program that served them, the one that made them, their lines and numbers.
+    pub(in crate::network::exchange) ran: Vec<(usize, u64, u64, u64)>,
+    /// What came of calls: the program that made them, their lines and numbers.
+    pub(in crate::network::exchange) outcomes: Vec<(usize, u64, u64, Outcome)>,
+    /// Time that all takes on its way, beside the jitter.
+    pub(in crate::network::exchange) delay: u64,
+    /// Time that a call takes.
+    pub(in crate::network::exchange) service_time: u64,
+    /// Answers that programs give at their times.
+    answers: BTreeMap<(u64, u64), (usize, u64, u64, u64)>,
     states: BTreeMap<(usize, Option<u64>), u64>,
     weather: Weather,
     chance: u64,
@@ -59,11 +70,16 @@ pub(super) struct Lossy {
 }
 
 impl Lossy {
-    pub(super) fn new(programs: usize, weather: Weather, seed: u64) -> Lossy {
+    pub(in crate::network::exchange) fn new(programs: usize, weather: Weather, seed: u64) -> Lossy {
         let mut network = Lossy {
             programs: Vec::new(),
             delivered: Vec::new(),
             is_cut: false,
+            ran: Vec::new(),
+            outcomes: Vec::new(),
+            delay: 0,
+            service_time: 0,
+            answers: BTreeMap::new(),
             states: BTreeMap::new(),
             weather,
             chance: seed | 1,
@@ -76,21 +92,26 @@ impl Lossy {
     }
 
     /// From now on the network does this.
-    pub(super) fn change(&mut self, weather: Weather) {
+    pub(in crate::network::exchange) fn change(&mut self, weather: Weather) {
         self.weather = weather;
     }
 
     /// Another program joins.
-    pub(super) fn join(&mut self) {
+    pub(in crate::network::exchange) fn join(&mut self) {
         self.join_with(&format!("Robot{}", self.programs.len()), 0);
     }
 
     /// Another program joins, with this component, and this schema of events.
-    pub(super) fn join_with(&mut self, component: &str, schema: u64) {
+    pub(in crate::network::exchange) fn join_with(&mut self, component: &str, schema: u64) {
+        self.join_as(&self.programs.len().to_string(), component, schema);
+    }
+
+    /// Another program joins under this name.
+    pub(in crate::network::exchange) fn join_as(&mut self, name: &str, component: &str, schema: u64) {
         let number = self.programs.len();
         let mut exchange = Exchange::new(Settings {
             program: number as u64,
-            name: number.to_string(),
+            name: name.to_owned(),
             patience: 1_000 * MILLISECOND,
             limit: 256 << 10,
             components: BTreeSet::from([component.to_owned()]),
@@ -108,28 +129,28 @@ impl Lossy {
     }
 
     /// A program sends an event.
-    pub(super) fn send(&mut self, program: usize, topic: &str) {
+    pub(in crate::network::exchange) fn send(&mut self, program: usize, topic: &str) {
         self.say(program, topic, false, None);
     }
 
     /// A program puts a state.
-    pub(super) fn put(&mut self, program: usize, topic: &str, key: u64) {
+    pub(in crate::network::exchange) fn put(&mut self, program: usize, topic: &str, key: u64) {
         let number = self.say(program, topic, true, Some(key));
         self.states.insert((program, Some(key)), number);
     }
 
     /// Number of the messages that a program has sent on a topic.
-    pub(super) fn sent(&self, program: usize, topic: &str) -> u64 {
+    pub(in crate::network::exchange) fn sent(&self, program: usize, topic: &str) -> u64 {
         self.programs[program].sent.get(topic).copied().unwrap_or_default()
     }
 
     /// The last message of each program and key.
-    pub(super) fn newest_states(&self) -> BTreeMap<(usize, Option<u64>), u64> {
+    pub(in crate::network::exchange) fn newest_states(&self) -> BTreeMap<(usize, Option<u64>), u64> {
         self.states.clone()
     }
 
     /// What a program was told.
-    pub(super) fn told(&self, program: usize) -> Vec<String> {
+    pub(in crate::network::exchange) fn told(&self, program: usize) -> Vec<String> {
         self.programs[program].told.clone()
     }
 
@@ -154,13 +175,27 @@ impl Lossy {
     }
 
     /// A program leaves.
-    pub(super) fn leave(&mut self, program: usize) {
+    pub(in crate::network::exchange) fn leave(&mut self, program: usize) {
         self.programs[program].exchange.leave();
         self.carry_out(program);
     }
 
+    /// A program calls a component of the program of this name. Gives the number of the call.
+    pub(in crate::network::exchange) fn call(&mut self, program: usize, node: &str, call: OwnCall) -> u64 {
+        let call = OwnCall { node: node.to_owned(), ..call };
+        let number = self.programs[program].exchange.call(call, self.now);
+        self.carry_out(program);
+        number
+    }
+
+    /// What came of the calls of a program.
+    pub(in crate::network::exchange) fn outcomes_of(&self, program: usize) -> Vec<(u64, u64, Outcome)> {
+        let own = self.outcomes.iter().filter(|(caller, ..)| *caller == program);
+        own.map(|(_, line, number, outcome)| (*line, *number, outcome.clone())).collect()
+    }
+
     /// Lets time pass.
-    pub(super) fn run(&mut self, time: u64) {
+    pub(in crate::network::exchange) fn run(&mut self, time: u64) {
         let end = self.now + time;
         loop {
             for program in 0..self.programs.len() {
@@ -168,6 +203,15 @@ impl Lossy {
                     self.programs[program].exchange.tick(self.now);
                     self.carry_out(program);
                 }
+            }
+            // A program that is stopped gives its answers when it goes on.
+            let is_due = |at: u64, server: usize| at <= self.now && !self.programs[server].is_stopped;
+            let due = self.answers.iter().filter(|((at, _), (server, ..))| is_due(*at, *server));
+            for key in due.map(|(key, _)| *key).collect::<Vec<_>>() {
+                let Some((server, program, line, number)) = self.answers.remove(&key) else { continue };
+                let bytes = number.to_le_bytes().to_vec();
+                self.programs[server].exchange.reply(program, line, number, Ok(bytes));
+                self.carry_out(server);
             }
             while let Some(entry) = self.flying.first_entry().filter(|entry| entry.key().0 <= self.now) {
                 let packet = entry.remove();
@@ -200,6 +244,13 @@ impl Lossy {
                     let (sender, reader) = (sender as usize, program);
                     self.delivered.push(Delivered { sender, reader, topic, key: arrived.key, number });
                 }
+                Action::Serve(request) => {
+                    self.ran.push((program, request.program, request.line, request.number));
+                    self.count += 1;
+                    let answer = (program, request.program, request.line, request.number);
+                    self.answers.insert((self.now + self.service_time, self.count), answer);
+                }
+                Action::Answered { line, number, outcome } => self.outcomes.push((program, line, number, outcome)),
                 Action::Tell(news) => {
                     let line = match news {
                         News::Joined { program, .. } => format!("Joined {program}"),
@@ -226,7 +277,7 @@ impl Lossy {
             if self.is_cut || self.random(100) < u64::from(self.weather.loss) {
                 continue;
             }
-            let at = self.now + self.random(self.weather.jitter + 1) * MILLISECOND;
+            let at = self.now + self.delay + self.random(self.weather.jitter + 1) * MILLISECOND;
             self.count += 1;
             self.flying.insert((at, self.count), packet.clone());
         }
@@ -246,6 +297,12 @@ impl Lossy {
                     exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now);
                 }
                 Destination::Alive(_) => exchange.hear(&cdr::decode(bytes).unwrap(), now),
+                Destination::Call(program) if is_mine(program) => {
+                    exchange.take_request(cdr::decode(bytes).unwrap(), now);
+                }
+                Destination::Reply(program) if is_mine(program) => {
+                    exchange.take_reply(cdr::decode(bytes).unwrap(), now);
+                }
                 Destination::Ask(program) if is_mine(program) => exchange.answer(&cdr::decode(bytes).unwrap()),
                 Destination::Covered(program) if is_mine(program) => exchange.cover(&cdr::decode(bytes).unwrap(), now),
                 _ => {}

@@ -2,7 +2,7 @@
 
 mod ending;
 mod hostile;
-mod lossy;
+pub(in crate::network::exchange) mod lossy;
 
 use std::collections::BTreeMap;
 

@@ -1,0 +1,68 @@
+//! The fleet of a program, and what it is on a network.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use saoms_api::Level;
+
+use super::exchange::Arrived;
+use super::exchange::wire::{Request, Vote};
+use super::rights::Granted;
+
+/// A message of another program for the fleet.
+#[derive(Clone, Debug)]
+pub struct FromNetwork {
+    /// The topic.
+    pub topic: Arc<str>,
+    /// The message.
+    pub arrived: Arrived,
+}
+
+/// The fleet of a program, as its part of a network sees it.
+pub trait Fleet: Send + 'static {
+    /// Takes messages from the front, as many as find room.
+    fn deliver(&self, messages: &mut VecDeque<FromNetwork>);
+
+    /// Serves a call of another program, or takes in a heartbeat. The answer of a call is left at the port.
+    fn serve(&self, request: Request);
+
+    /// A program gives no sign of life any more, or has ended: nothing goes on that it moved.
+    fn misses(&self, program: &str);
+
+    /// Whether it sees work left.
+    fn vote(&self) -> Vote;
+
+    /// Whether all programs of the network agree that no work is left: the run may end then.
+    fn agree(&self, is_done: bool);
+
+    /// Tells something about the network.
+    fn tell(&self, level: Level, text: String);
+
+    /// Tells a person that the link to the network is lost, or that a program gives no sign of life; without a text,
+    /// that it is over.
+    fn alert(&self, kind: &str, subject: &str, text: Option<String>);
+
+    /// The link is lost: no other program was heard for the patience of this one.
+    fn lose(&self);
+}
+
+/// What a program is on a network.
+#[derive(Clone, Debug, Default)]
+pub struct Membership {
+    /// Where the network is.
+    pub url: String,
+    /// The user as which it has joined.
+    pub user: Option<String>,
+    /// Of the router: what it lets users do, if that is not everything.
+    pub grants: Option<Granted>,
+    /// The components that read each topic.
+    pub readers: BTreeMap<String, Vec<String>>,
+    /// True if components call others over the network.
+    pub has_calls: bool,
+}
+
+impl Membership {
+    pub(super) fn readers(&self, topic: &str) -> Vec<String> {
+        self.readers.get(topic).cloned().unwrap_or_default()
+    }
+}
