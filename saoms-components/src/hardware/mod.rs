@@ -6,6 +6,7 @@
 
 mod action;
 mod area;
+mod proxy;
 
 use saoms_api::{Context, Failure, interface};
 
