@@ -9,7 +9,7 @@
 //! - Of a state topic a reader receives the newest message of each component and key, at first all that there are.
 //! - What is kept is bounded. Beyond the bound, programs that are away are given up first; then events are lost, and
 //!   both ends say so.
-//! - A [call](call) of a component of another program runs at most once.
+//! - A [call] of a component of another program runs at most once.
 
 mod action;
 pub mod call;
