@@ -257,5 +257,6 @@ impl RobotKnowledge {
                 self.lists.requests.hear(event, header);
             }
         }
+        self.lists.requests.forget_silent(context.now());
     }
 }

@@ -51,7 +51,7 @@ fn luggage_of_a_program_that_stops_passes_on_unless_it_is_on_board() {
     let floors = [&*floors[0], &*floors[1]];
     let (stopped, goes_on) = who_says(floors, "takes luggage 1 from");
     stopped.signal(libc::SIGSTOP);
-    programs.until(&others[0], "luggage 1 waits again at (9,1): nothing was heard of robot");
+    // The master may not have heard that it took it: then it is its interest that does not count any more.
     programs.until(goes_on, "collected luggage 1 at");
     stopped.signal(libc::SIGCONT);
     let (stopped, goes_on) = who_says(floors, "collected luggage 2 at");

@@ -21,6 +21,8 @@ pub(super) struct PieceLease {
     until: Time,
     /// True if the robot may collect the piece, and may have done so.
     granted: bool,
+    /// True if it is over.
+    lapsed: bool,
 }
 
 /// Luggage that passes on: its robot was not heard for the time of the lease.
@@ -41,15 +43,21 @@ impl OpenLuggage {
         let Lease { robot, luggage, number, collects } = *lease;
         let Some(piece) = self.pieces.get_mut(&luggage) else { return Some(false) };
         if piece.taken != Some(robot) {
-            let is_over = piece.lease.is_some_and(|known| (known.robot, known.number) == (robot, number));
-            // Otherwise it may be on its way to say that it took the piece, and asks again.
+            let is_over =
+                piece.lease.is_some_and(|known| known.lapsed && (known.robot, known.number) == (robot, number));
             let is_of_other = piece.taken.or(piece.asked).is_some_and(|bearer| bearer != robot);
-            return (is_over || is_of_other).then_some(false);
+            if is_over || is_of_other {
+                return Some(false);
+            }
+            // That it took the piece is on its way, and it asks again.
+            let until = now + duration;
+            piece.lease = Some(PieceLease { robot, number, until, granted: false, lapsed: false });
+            return None;
         }
         let until = now + duration;
         match piece.lease.as_mut().filter(|known| (known.robot, known.number) == (robot, number)) {
             Some(known) => (known.until, known.granted) = (until, known.granted || collects),
-            None => piece.lease = Some(PieceLease { robot, number, until, granted: collects }),
+            None => piece.lease = Some(PieceLease { robot, number, until, granted: collects, lapsed: false }),
         }
         collects.then_some(true)
     }
@@ -64,6 +72,7 @@ impl OpenLuggage {
             if lease.granted || lease.until > now {
                 continue;
             }
+            lease.lapsed = true;
             let PieceLease { robot, number, .. } = *lease;
             (piece.taken, piece.waits) = (None, true);
             self.waiting.insert((piece.since, *luggage));

@@ -94,7 +94,7 @@ impl Helps {
         let respond = |help: &mut Help| match message.stage {
             CriticalStage::Intention => {
                 help.rivals.retain(|rival| rival.robot != message.healer);
-                help.rivals.push(Rival { robot: message.healer, block: message.healer_block });
+                help.rivals.push(Rival { robot: message.healer, block: message.healer_block, until: None });
             }
             CriticalStage::Release => help.rivals.retain(|rival| rival.robot != message.healer),
             CriticalStage::Request | CriticalStage::Taken | CriticalStage::StandsIn => {}

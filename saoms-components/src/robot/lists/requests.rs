@@ -4,7 +4,7 @@ use std::fmt;
 use saoms_api::{Cause, Field, Header, Time};
 
 use crate::grid::Block;
-use crate::messages::{Assignment, EventLuggage, LuggageStage, Visit, is_visit};
+use crate::messages::{Assignment, EventLuggage, Lease, LuggageStage, Visit, is_visit};
 use crate::robot::Job;
 use crate::state::Numbers;
 
@@ -15,6 +15,8 @@ pub struct Rival {
     pub robot: u32,
     /// Its position at that time.
     pub block: Block,
+    /// Of a robot of another program, the time after which its interest does not count, unless it takes the luggage.
+    pub until: Option<Time>,
 }
 
 /// What the battery has to last for a request to which no way leads for now.
@@ -62,11 +64,11 @@ impl fmt::Display for Request {
 }
 
 impl Request {
-    fn hear(&mut self, event: &EventLuggage) {
+    fn hear(&mut self, event: &EventLuggage, until: Option<Time>) {
         match event.stage {
             LuggageStage::Interest => {
                 self.rivals.retain(|rival| rival.robot != event.robot);
-                self.rivals.push(Rival { robot: event.robot, block: event.block });
+                self.rivals.push(Rival { robot: event.robot, block: event.block, until });
             }
             LuggageStage::Release => self.rivals.retain(|rival| rival.robot != event.robot),
             LuggageStage::Request
@@ -101,6 +103,8 @@ pub struct Requests {
     requested: BTreeMap<u32, Time>,
     /// Luggage that is not settled and was announced from another program.
     of_elsewhere: BTreeSet<u32>,
+    /// When the interest of a robot of another program does not count any more, the first of them.
+    silent_at: Option<Time>,
 }
 
 /// Greatest number of assignments that wait for an answer: a robot without a loop that answers keeps the newest.
@@ -174,6 +178,7 @@ impl Requests {
         (self.settled, self.delivered, self.assigned) = (memory.settled, memory.delivered, memory.assigned);
         self.requested = memory.requested.iter().map(|requested| (requested.luggage, requested.at)).collect();
         self.of_elsewhere = memory.of_elsewhere.into_iter().collect();
+        self.silent_at = self.rivals().filter_map(|rival| rival.until).min();
     }
 
     /// An empty list, for the robot with this number.
@@ -190,6 +195,7 @@ impl Requests {
             assigned: Vec::new(),
             requested: BTreeMap::new(),
             of_elsewhere: BTreeSet::new(),
+            silent_at: None,
         }
     }
 
@@ -278,13 +284,15 @@ impl Requests {
             }
             _ => {}
         }
+        let until = header.is_from_elsewhere().then(|| header.sent + Lease::duration(0));
+        self.silent_at = self.silent_at.into_iter().chain(until).min();
         if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.job.luggage == event.luggage) {
-            claimed.hear(event);
+            claimed.hear(event, until);
             if gone {
                 self.claimed = None;
             }
         } else if let Some(place) = self.open.iter().position(|open| open.job.luggage == event.luggage) {
-            self.open[place].hear(event);
+            self.open[place].hear(event, until);
             if gone {
                 self.open.remove(place);
             }
@@ -340,6 +348,21 @@ impl Requests {
                 request.learn(visit);
             }
             self.open.push(request);
+        }
+    }
+
+    fn rivals(&self) -> impl Iterator<Item = &Rival> {
+        self.open.iter().chain(&self.claimed).flat_map(|request| &request.rivals)
+    }
+
+    /// Drops the interest of robots of other programs that said nothing more for the time of a lease: nothing may be
+    /// heard of them. Who takes the luggage has it on a lease, and nobody collects it twice.
+    pub(in crate::robot) fn forget_silent(&mut self, now: Time) {
+        if self.silent_at.is_some_and(|at| at <= now) {
+            for request in self.open.iter_mut().chain(&mut self.claimed) {
+                request.rivals.retain(|rival| rival.until.is_none_or(|until| until > now));
+            }
+            self.silent_at = self.rivals().filter_map(|rival| rival.until).min();
         }
     }
 

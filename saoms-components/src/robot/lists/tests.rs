@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use saoms_api::{Cause, Header, Time};
 
-use super::{Lists, Peers, Rival};
+use super::{Lists, Peers, Requests, Rival};
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage, Position, RobotList};
 
@@ -96,7 +96,7 @@ fn interests_of_others_are_known_until_they_take_them_back() {
         lists.requests.hear(&response(1, robot, LuggageStage::Interest), at(4));
     }
     let rivals = |lists: &Lists| lists.requests.open()[0].rivals.clone();
-    let rival = |robot| Rival { robot, block: Block::new(0, robot as i32) };
+    let rival = |robot| Rival { robot, block: Block::new(0, robot as i32), until: None };
     assert_eq!(rivals(&lists), [rival(1), rival(3)]);
     lists.requests.hear(&response(1, 1, LuggageStage::Release), at(5));
     assert_eq!(rivals(&lists), [rival(3)]);
@@ -149,4 +149,20 @@ fn the_newest_position_of_each_counts() {
     assert_eq!(shown(lists.peers.heard().collect()), [(3, 2)]);
     let on = |x| lists.peers.on(Block::new(x, 0)).map(|peer| peer.robot);
     assert_eq!((on(4), on(7)), (Some(1), None));
+}
+
+#[test]
+fn interest_of_another_program_that_says_nothing_more_ends() {
+    let at = |seconds| Time::START + Duration::from_secs(seconds);
+    let from = |sender, seconds| Header { sender, sent: at(seconds), cause: Cause::default() };
+    let mut requests = Requests::new(1);
+    requests.hear(&EventLuggage::request(1, Block::new(3, 1), Block::new(3, 9)), from(0, 1));
+    let interest = |robot| EventLuggage { robot, luggage: 1, stage: LuggageStage::Interest, ..EventLuggage::default() };
+    requests.hear(&interest(2), from(0, 1));
+    requests.hear(&interest(3), from(saoms_api::host::FIRST_ELSEWHERE, 2));
+    let rivals = |requests: &Requests| requests.open()[0].rivals.iter().map(|rival| rival.robot).collect::<Vec<_>>();
+    requests.forget_silent(at(11));
+    assert_eq!(rivals(&requests), [2, 3]);
+    requests.forget_silent(at(12));
+    assert_eq!(rivals(&requests), [2], "of its own program a robot hears all");
 }

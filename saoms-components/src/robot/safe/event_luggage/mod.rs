@@ -200,6 +200,8 @@ impl Loop for SafeEventLuggage {
                 knowledge.stops = knowledge.lists.requests.stops(job.luggage).to_vec();
                 knowledge.visits = !knowledge.stops.is_empty();
                 knowledge.take(job, context.now());
+                // Before it says that it takes it: a program that is stopped between the two has no job for ever.
+                knowledge.renew_lease(context)?;
                 knowledge.set_out(&job);
                 match knowledge.visits {
                     true => info!(context, "goes to {} for visit {}", job.from, job.luggage - FIRST_VISIT),
