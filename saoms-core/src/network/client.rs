@@ -32,6 +32,9 @@ const FIRST_OF_TOPICS: u64 = 16;
 const MOST_VERSIONS: usize = 8;
 /// Longest sleep of the thread.
 const LONGEST_SLEEP: Duration = Duration::from_millis(200);
+/// Time of a sleep, in nanoseconds, after which the thread was held up, as by SIGSTOP: what others said meanwhile has
+/// not arrived yet.
+const HELD_UP: u64 = 500_000_000;
 /// Time after which messages are offered again for which the fleet had no room.
 const ROOM_AGAIN: Duration = Duration::from_millis(1);
 /// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
@@ -164,7 +167,12 @@ impl<F: Fleet> Member<F> {
     fn run(mut self, port: &Port) {
         let mut ending: Option<Instant> = None;
         loop {
+            let before = self.now();
             let waiting = port.take(self.sleep(), ending.is_some());
+            let slept = self.now() - before;
+            if slept > HELD_UP {
+                self.exchange.hold_up(slept);
+            }
             let is_closed = waiting.is_closed;
             self.take(waiting);
             let now = self.now();

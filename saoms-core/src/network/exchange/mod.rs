@@ -316,6 +316,11 @@ impl Exchange {
         self.outgoing.values().map(|outgoing| outgoing.size).sum()
     }
 
+    /// The program was held up for so long, and has not heard what others said meanwhile: they are not missed for that.
+    pub fn hold_up(&mut self, time: u64) {
+        self.peers.values_mut().for_each(|peer| peer.heard += time);
+    }
+
     /// True if other programs are known, and none of them gives a sign of life.
     pub fn hears_nobody(&self) -> bool {
         !self.peers.is_empty() && self.peers.values().all(|peer| !peer.is_reachable)

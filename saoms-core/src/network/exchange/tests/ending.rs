@@ -49,6 +49,17 @@ fn nobody_is_heard_when_all_others_are_missed() {
 }
 
 #[test]
+fn who_was_held_up_itself_misses_nobody() {
+    let mut own = program(&[]);
+    own.hear(&alive(2, "one", Vote::Silent), 0);
+    own.hold_up(20_000 * MILLISECOND);
+    own.tick(20_500 * MILLISECOND);
+    assert!(!own.hears_nobody());
+    own.tick(22_000 * MILLISECOND);
+    assert!(own.hears_nobody());
+}
+
+#[test]
 fn a_program_that_said_that_all_is_done_and_vanished_has_said_so() {
     let mut own = program(&[]);
     own.vote(Vote::Silent);
