@@ -300,6 +300,8 @@ pub const REMOVAL_ASKED: Topic<Fault> = Topic::event("REMOVALASKEDTOPIC").option
 pub struct Removal {
     /// Number of the robot.
     pub robot: u32,
+    /// Time from which on it is out: an answer about an earlier time says nothing of where it is now.
+    pub since: Time,
     /// Block where it was.
     pub block: Block,
     /// Numbers of the pieces that it carried, which are on that block.

@@ -16,6 +16,12 @@ use crate::hardware::{Action, ActionKind, Progress};
 impl RobotKnowledge {
     /// Finds out what the hardware did and does; `false` as long as it does not know.
     pub(super) fn catch_up(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
+        // Somebody took it off the floor while it was out, of which it did not hear.
+        let Reply::Answer(is_on_floor) = self.hardware.is_on_floor(context, self.number)? else { return Ok(false) };
+        if !is_on_floor {
+            self.leave_floor(context)?;
+            return Ok(false);
+        }
         if !self.routes.knows_area() {
             let Reply::Answer(map) = self.hardware.area(context)? else { return Ok(false) };
             self.routes.learn_again(map, self.charge_block, &self.lists.charging_places);

@@ -176,6 +176,9 @@ impl Component for Robot {
             return self.knowledge.stop_for_good(context);
         }
         let entered = self.enter(context)?;
+        if self.knowledge.gone {
+            return Ok(());
+        }
         if entered {
             context.console(format_args!(
                 "Execution {} of {} starts at {}",

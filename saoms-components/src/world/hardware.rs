@@ -80,7 +80,8 @@ impl World {
             let block = self.referee.block(robot)?;
             let (delivered, luggage) = self.put_down(context, robot, block);
             if !delivered.is_empty() || !luggage.is_empty() {
-                self.say_left(context, Removal { robot, block, luggage, delivered })?;
+                let since = context.now();
+                self.say_left(context, Removal { robot, since, block, luggage, delivered })?;
             }
         }
         Ok(())

@@ -140,7 +140,7 @@ impl Component for World {
                     FaultKind::Breakdown => self.break_down(context, fault),
                     FaultKind::Gone => {
                         context.because(header.cause);
-                        self.take_away(context, fault)?;
+                        self.take_away(context, fault, fault.since.unwrap_or(header.sent))?;
                         context.because(Cause::default());
                     }
                     FaultKind::Failed | FaultKind::Restarting => {

@@ -8,8 +8,8 @@ use crate::grid::Block;
 use crate::messages::{Fault, FaultKind, Removal};
 
 impl World {
-    /// Somebody took a robot off the floor.
-    pub(super) fn take_away(&mut self, context: &mut Context<'_>, fault: &Fault) -> Result<(), Failure> {
+    /// Somebody took a robot off the floor, at this time.
+    pub(super) fn take_away(&mut self, context: &mut Context<'_>, fault: &Fault, since: Time) -> Result<(), Failure> {
         let robot = fault.robot;
         if self.validator.check_known(robot).is_err() {
             // The master reports it.
@@ -27,7 +27,7 @@ impl World {
             }
             Err(_) => (Block::default(), Vec::new(), Vec::new()),
         };
-        self.say_left(context, Removal { robot, block, luggage, delivered })
+        self.say_left(context, Removal { robot, since, block, luggage, delivered })
     }
 
     /// A robot lets go of what it carries: what is at its destination there is delivered. Returns the numbers of these
@@ -56,10 +56,10 @@ impl World {
                 context
                     .effect(record!(stops_failed_robot: "robot {robot} has failed: it stays at {block}", robot, block));
                 warn!(context, "{fault}: it stays at {block}");
-                Removal { robot, block, luggage, delivered }
+                Removal { robot, since, block, luggage, delivered }
             }
             // It is none of this world.
-            Err(_) => Removal { robot, ..Removal::default() },
+            Err(_) => Removal { robot, since, ..Removal::default() },
         };
         self.say_left(context, removal)
     }
@@ -74,11 +74,15 @@ impl World {
     pub(super) fn say_again(&mut self, context: &mut Context<'_>, fault: &Fault, since: Time) -> Result<(), Failure> {
         let (robot, is_gone) = (fault.robot, fault.kind == FaultKind::Gone);
         if !self.referee.was_out(robot, is_gone, since) {
-            return if is_gone { self.take_away(context, fault) } else { self.stop_failed(context, fault, since) };
+            return if is_gone {
+                self.take_away(context, fault, since)
+            } else {
+                self.stop_failed(context, fault, since)
+            };
         }
-        let removal = match self.left.get(&robot) {
+        let removal = match self.left.get(&robot).filter(|left| is_gone || left.since >= since) {
             Some(left) => left.clone(),
-            None => Removal { robot, block: self.referee.block(robot)?, ..Removal::default() },
+            None => Removal { robot, since, block: self.referee.block(robot)?, ..Removal::default() },
         };
         context.send(&self.removals, removal)
     }

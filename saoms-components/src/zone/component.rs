@@ -5,7 +5,7 @@ use saoms_api::{
     Subscription, Time, record, warn,
 };
 
-use super::deadlock::deadlocks;
+use super::deadlock::StandingStill;
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger, Member};
 use super::maneuver::Maneuver;
@@ -54,6 +54,7 @@ pub struct Zone {
     open: bool,
     /// Robots that the alerts about deadlocks are about.
     deadlocked: BTreeSet<u32>,
+    standing_still: StandingStill,
     /// Robots with an unconfirmed request, and the execution in which that is confirmed at the latest.
     unconfirmed: BTreeMap<u32, u64>,
     #[subscribes(GRANT_REQUEST)]
@@ -103,6 +104,7 @@ impl Component for Zone {
             spoke: BTreeMap::new(),
             open: false,
             deadlocked: BTreeSet::new(),
+            standing_still: StandingStill::default(),
             unconfirmed: BTreeMap::new(),
             requests: Subscription::default(),
             presences: Subscription::default(),
@@ -379,10 +381,10 @@ impl Zone {
     /// Says which robots stand in each other's way for good, so that a person takes one of them away.
     fn name_deadlocks(&mut self, state: &State, context: &mut Context<'_>) {
         let waits = state.ledger.members().values().any(|member| member.waited > 0);
-        if !waits && self.deadlocked.is_empty() {
+        if !waits && self.deadlocked.is_empty() && self.standing_still.is_empty() {
             return;
         }
-        let found = deadlocks(&state.ledger);
+        let found = self.standing_still.count(&state.ledger);
         self.deadlocked.retain(|robot| {
             let lasts = found.iter().any(|deadlock| deadlock.first() == *robot);
             if !lasts {

@@ -1,5 +1,6 @@
 //! Robots that stand in each other's way for good.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::ledger::{Ledger, Member};
@@ -11,17 +12,50 @@ use crate::messages::Standing;
 /// Maneuvers are looked for after 4, 8, 16 and 32 rounds: by then there is none.
 const STANDING_STILL: u32 = 40;
 
-/// Robots of which each one waits for the next, and the last one for one of them, or for a robot that cannot make way.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Deadlock {
-    /// The robots and their blocks, the one with the lowest number first.
-    robots: Vec<(u32, Block)>,
+/// The robots of a zone that stand still and want to go on.
+#[derive(Debug, Default)]
+pub(super) struct StandingStill(BTreeMap<u32, Standstill>);
+
+#[derive(Debug)]
+struct Standstill {
+    /// Number of its last step that was granted.
+    granted: u64,
+    /// Number of rounds since then.
+    rounds: u32,
 }
 
-impl Deadlock {
+impl StandingStill {
+    /// Counts a round. Gives the deadlocks of the zone, each once.
+    pub(super) fn count(&mut self, ledger: &Ledger) -> Vec<Deadlock> {
+        let stands = |robot: &u32| ledger.member(*robot).filter(|member| is_at_rest(member) && member.wants_to_go());
+        self.0.retain(|robot, still| stands(robot).is_some_and(|member| member.granted == still.granted));
+        let waiting = ledger.members().iter().filter(|(robot, member)| stands(robot).is_some() && member.waited > 0);
+        for (robot, member) in waiting {
+            let still = self.0.entry(*robot).or_insert(Standstill { granted: member.granted, rounds: 0 });
+            still.rounds = still.rounds.saturating_add(1);
+        }
+        let mut found: Vec<Deadlock> = Vec::new();
+        let stuck = self.0.keys().filter(|robot| self.is_stuck(**robot));
+        for deadlock in stuck.filter_map(|robot| self.deadlock_of(*robot, ledger)) {
+            if found.iter().all(|one| one.first() != deadlock.first()) {
+                found.push(deadlock);
+            }
+        }
+        found
+    }
+
+    /// True if no robot stands still.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn is_stuck(&self, robot: u32) -> bool {
+        self.0.get(&robot).is_some_and(|still| still.rounds >= STANDING_STILL)
+    }
+
     /// The deadlock that a robot is in, or waits for; `None` if a robot in its way can still go on, or has to stay for
     /// now.
-    fn of(robot: u32, ledger: &Ledger) -> Option<Deadlock> {
+    fn deadlock_of(&self, robot: u32, ledger: &Ledger) -> Option<Deadlock> {
         let mut chain: Vec<(u32, Block)> = Vec::new();
         let mut next = robot;
         loop {
@@ -35,7 +69,7 @@ impl Deadlock {
             if is_last {
                 break;
             }
-            if !is_stuck(member) {
+            if !self.is_stuck(next) {
                 return None;
             }
             next = member.in_the_way?.1;
@@ -44,32 +78,25 @@ impl Deadlock {
         chain.rotate_left(first);
         Some(Deadlock { robots: chain })
     }
+}
 
+/// Robots of which each one waits for the next, and the last one for one of them, or for a robot that cannot make way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Deadlock {
+    /// The robots and their blocks, the one with the lowest number first.
+    robots: Vec<(u32, Block)>,
+}
+
+impl Deadlock {
     /// The number of the first robot: an alert is about it.
     pub(super) fn first(&self) -> u32 {
         self.robots.first().map_or(0, |(robot, _)| *robot)
     }
 }
 
-/// The deadlocks of a zone, each once.
-pub(super) fn deadlocks(ledger: &Ledger) -> Vec<Deadlock> {
-    let mut found: Vec<Deadlock> = Vec::new();
-    let stuck = ledger.members().iter().filter(|(_, member)| is_stuck(member));
-    for deadlock in stuck.filter_map(|(robot, _)| Deadlock::of(*robot, ledger)) {
-        if found.iter().all(|one| one.first() != deadlock.first()) {
-            found.push(deadlock);
-        }
-    }
-    found
-}
-
 /// True if the robot holds one block, and would make way.
 fn is_at_rest(member: &Member) -> bool {
     member.steps.len() == 1 && member.request.standing == Standing::MakesWay
-}
-
-fn is_stuck(member: &Member) -> bool {
-    is_at_rest(member) && member.wants_to_go() && member.waited >= STANDING_STILL
 }
 
 impl fmt::Display for Deadlock {

@@ -146,3 +146,25 @@ fn a_fleet_goes_on_whatever_somebody_sends_to_its_broker() {
     // What strangers claim to have sent may be lost.
     programs.end_without(&broker, &["wrong:", "panicked"]);
 }
+
+#[test]
+fn a_program_of_another_version_is_told_once_and_not_heard() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let reader = reader(&programs, "reader", programs.port, &[("count", "10")]);
+    programs.until(&reader, "has joined the network at");
+    let mut stream = TcpStream::connect(("127.0.0.1", programs.port)).unwrap();
+    for _ in 0..3 {
+        stream.write_all(&frame(0, "saoms/2/alive/77", b"what no program of this version reads", &[])).unwrap();
+    }
+    programs.until(&reader, "speaks version 2 of its language, and this one version 1");
+    programs.until(&reader, "build both from one version");
+    let senders = senders(&programs, programs.port, &[("count", "10")]);
+    for sender in ["Sender1", "Sender2"] {
+        programs.until(&reader, &format!("has received 1 to 10 of {sender}"));
+    }
+    assert_eq!(reader.printed().matches("speaks version 2").count(), 1, "{}", reader.printed());
+    programs.stop(&senders);
+    programs.stop(&reader);
+    programs.stop(&broker);
+}

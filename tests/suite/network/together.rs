@@ -1,9 +1,11 @@
 //! A fleet that is divided among programs works as one.
 
+use std::fs;
 use std::sync::Arc;
 
 use super::programs::{Program, Programs, Transport};
 use super::{reader, receives_all, senders};
+use crate::support::root;
 
 fn work(programs: &Programs) -> Arc<Program> {
     let scenario = "at 3s luggage (3,1) to (3,10)\nat 3s luggage (5,1) to (5,10)";
@@ -54,6 +56,31 @@ fn robots_of_another_program_deliver_all_luggage_over_zenoh_too() {
     programs.until(&robots, "nobody listens there");
     let broker = programs.broker();
     deliver_all(&programs, &broker, &work, &robots);
+}
+
+/// Figures 6.25 and 6.26 of the manual, each in a program as a user starts it, but for the port; a third program gives
+/// the robots work.
+#[test]
+fn the_files_of_the_manual_are_one_fleet() {
+    let programs = Programs::over(Transport::Zenoh);
+    for file in ["launchbroker.composite", "launchtasks.composite"] {
+        let text = fs::read_to_string(root().join("composites/manual").join(file)).unwrap();
+        assert!(text.contains("61616"));
+        let text = text.replace("61616", &programs.port.to_string());
+        programs.write(file, &text.replace("localhost", "127.0.0.1"));
+    }
+    let robots = programs.run("tasks", &["run", "launchtasks.composite"]);
+    let broker = programs.run("broker", &["run", "launchbroker.composite"]);
+    programs.until(&robots, "has joined the network at");
+    let scenario = "at 3s luggage (1,1) to (2,1)\nat 3s luggage (1,2) to (2,2)";
+    let environment = ("Environment", "saoms.Environment", &[("scenario", scenario)][..]);
+    let work = programs.tasks("work", programs.port, &[environment, ("Master", "saoms.MasterEnvironment", &[])]);
+    for luggage in ["deposited luggage 1 at (2,1)", "deposited luggage 2 at (2,2)"] {
+        programs.until(&robots, luggage);
+    }
+    programs.ends(&work, 0);
+    programs.ends(&robots, 0);
+    programs.end(&broker);
 }
 
 #[test]

@@ -32,7 +32,7 @@ impl OpenLuggage {
         if fault.is_failure() {
             self.failed.insert(robot, Failed { fault: fault.clone(), is_told: false });
             // What the world said of an earlier failure.
-            self.left.remove(&robot);
+            self.left.retain(|one, left| *one != robot || Some(left.since) >= fault.since);
         }
         for (luggage, piece) in &mut self.pieces {
             piece.concede(robot);
@@ -47,9 +47,10 @@ impl OpenLuggage {
 
     /// The world says what a robot left, and where.
     pub(in crate::master) fn hear_removal(&mut self, removal: &Removal) {
-        let Removal { robot, block, luggage, delivered } = removal;
-        if self.left.get(robot) == Some(removal) {
-            // The answer to a question that was asked again meanwhile.
+        let Removal { robot, since, block, luggage, delivered } = removal;
+        // The answer to a question that was asked again meanwhile, or about an earlier failure: the robot is elsewhere.
+        let is_earlier = self.failed.get(robot).is_some_and(|failed| Some(*since) < failed.fault.since);
+        if self.left.get(robot) == Some(removal) || is_earlier {
             return;
         }
         for luggage in luggage {

@@ -1,9 +1,10 @@
 //! Rule: zones do not fit each other, the map or the robots.
 
 pub(super) mod corridors;
+mod maps;
 pub(super) mod nodes;
 
-use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use crate::grid::{Block, Map};
@@ -17,8 +18,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5023",
         name: "zones",
-        meaning: "Zones overlap, leave free blocks of the map out, or have blocks outside the map. Or a \
-            component of their site drives without their grants: a robot of the policy `classic`, or one of a class \
+        meaning: "Zones overlap, leave free blocks of the map out, or have blocks outside the map, or another map \
+            than the world of their robots. Or a component of their site drives without their grants: a robot of the policy `classic`, or one of a class \
             that does not ask for grants.",
         severity: Severity::Error,
         rule: None,
@@ -47,7 +48,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             Ok(zone) => zones.extend(zone),
             Err(finding) => findings.push(*finding),
         }
+        findings.extend(without_map(fleet, index, &properties));
     }
+    findings.extend(zones.iter().filter_map(|zone| maps::differing(fleet, zone)));
     // What is missing of a zone with a fault is told once.
     if findings.is_empty() && !fleet.misses::<Zone>() {
         for (place, zone) in zones.iter().enumerate() {
@@ -91,9 +94,24 @@ impl<'f> ZoneOfSite<'f> {
         (self.grants, self.world) == (other.grants, other.world) && self.index != other.index
     }
 
+    /// True if a component asks the zones of its site.
+    fn is_asked_by(&self, component: &ComponentView<'_>) -> bool {
+        component.topic(GRANT.name()) == self.grants
+    }
+
     pub(super) fn place(&self) -> Place {
         Place::component(self.index)
     }
+}
+
+/// A zone that no reference gives a map, and no property.
+fn without_map(fleet: &FleetView<'_>, index: usize, properties: &ZoneProperties) -> Option<Finding> {
+    let is_without =
+        properties.map.is_none() && fleet.components()[index].target("world").is_none() && !fleet.misses::<Zone>();
+    is_without.then(|| {
+        Finding::new(Place::component(index), "the zone has no map")
+            .help("wire its reference `world` to a world, or give it the property `map`")
+    })
 }
 
 /// An earlier zone of the same site that has blocks of this zone.

@@ -66,3 +66,44 @@ fn a_robot_that_hears_late_that_it_is_gone_is_in_nobodys_way() {
         assert_eq!(fleet.violations(1, Duration::from_secs(80)), "", "gone at {tenths} tenths of a second");
     }
 }
+
+/// It goes on from what it had saved, and did not hear that somebody took it away meanwhile: it stays off its block,
+/// which others may have entered.
+#[test]
+fn a_robot_that_is_gone_while_it_restarts_stays_off_the_floor() {
+    let map = "
+        ........
+        ........
+    ";
+    let restarts =
+        |robot: String| robot.replace("</component>", "<property name=\"restart\">onFailure</property></component>");
+    let robots = restarts(robot(1, 0, 1)) + &restarts(robot(2, 0, 0));
+    for fault in [
+        // It restarts after it is gone, and what is said of that comes later.
+        "at 1s for 9s delay 150ms\nat 2s crash Robot1 restart 3s\nat 4950ms gone Robot1",
+        // The execution in which it hears that it is gone fails.
+        "at 3s for 3s stall Robot1\nat 5s gone Robot1\nat 4s fail Robot1\nat 6100ms fail Robot1",
+    ] {
+        let scenario = format!("{fault}\nat 8s luggage (0,1) to (5,1)");
+        let fleet = site(&[("map", map.to_owned())], &zones(1, 8), &robots, &scenario);
+        let run = fleet.run(1, Duration::from_secs(60));
+        assert_eq!(delivered(&run), 1, "{fault}: {}", run.log());
+        assert_eq!(fleet.violations(1, Duration::from_secs(60)), "", "{fault}: {}", run.log());
+        assert!(run.log_of("Robot1").iter().any(|line| line.starts_with("is gone from")), "{fault}: {}", run.log());
+    }
+}
+
+/// What a world says of an earlier failure of a robot is not taken for its answer about a later one.
+#[test]
+fn robots_that_fail_again_and_again_keep_their_blocks_however_late_news_are() {
+    let map = vec![".".repeat(11); 11].join("\n");
+    let robots: String = (0..4).map(|robot| self::robot(robot + 1, 0, robot + 1)).collect();
+    let scenario = "at 1s for 40s delay 0ms to 3s
+        from 3s every 5s..9s 4 times crash Robot* restart 1s
+        from 1s every 1s 40 times luggage random to random";
+    let fleet = site(&[("map", map)], &zones(1, 11), &robots, scenario);
+    for seed in 0..30 {
+        let run = fleet.run(seed, Duration::from_secs(45));
+        assert_eq!((run.count("collisions.vertex"), run.count("collisions.swap")), (0, 0), "{seed}: {}", run.log());
+    }
+}
