@@ -150,6 +150,8 @@ pub struct RobotKnowledge {
     pub untold: Option<JobEnd>,
     /// True if a master assigned the job.
     pub(super) is_assigned: bool,
+    /// Number of the component of the master that assigned it.
+    pub(super) assigned_by: u32,
     /// Number of executions for which it waits for the next assignment before it goes home.
     pub(super) lingers: u32,
     /// True if it still holds luggage that it gave up, so that it cannot take any other.
@@ -226,6 +228,7 @@ impl RobotKnowledge {
             failures: 0,
             untold: None,
             is_assigned: false,
+            assigned_by: 0,
             lingers: 0,
             loaded: false,
             said_homeward: false,

@@ -239,8 +239,8 @@ impl RobotKnowledge {
         for (header, assignment) in context.receive(&assignments).with_headers() {
             if assignment.robot == self.number && self.accepts(assignment, header, context) {
                 match assignment.lease {
-                    0 => self.lists.requests.hear_assignment(assignment, header.is_from_elsewhere(), header.cause),
-                    _ => self.hear_lease(assignment, header.cause),
+                    0 => self.lists.requests.hear_assignment(assignment, header),
+                    _ => self.hear_lease(assignment, header),
                 }
             }
         }

@@ -14,7 +14,18 @@ fn fleet(side: u32, master: &str, scenario: &str, robots: &[(u32, u32, &str)]) -
 }
 
 /// The same with these properties of the world and of both masters, of the environment and of the robots.
-fn fleet_with(side: u32, world: &str, [master, crew]: [&str; 2], scenario: &str, robots: &[(u32, u32, &str)]) -> Fleet {
+fn fleet_with(side: u32, world: &str, masters: [&str; 2], scenario: &str, robots: &[(u32, u32, &str)]) -> Fleet {
+    Fleet::of_text(fleet_text(&format!("width={side} height={side}"), world, masters, scenario, robots))
+}
+
+/// The same with a map of this size, or one that `world` has.
+fn fleet_text(
+    size: &str,
+    world: &str,
+    [master, crew]: [&str; 2],
+    scenario: &str,
+    robots: &[(u32, u32, &str)],
+) -> String {
     let mut text = String::from(
         "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">",
     );
@@ -26,7 +37,7 @@ fn fleet_with(side: u32, world: &str, [master, crew]: [&str; 2], scenario: &str,
         }
         text += &format!("{rest}</component>\n");
     };
-    add("saoms.World", "World", &format!("width={side} height={side} {world}"), "");
+    add("saoms.World", "World", &format!("{size} {world}"), "");
     add("saoms.MasterEnvironment", "Master", master, "");
     add("saoms.MasterRobot", "Crew", crew, "");
     add("saoms.Environment", "Environment", "", &format!("<property name=\"scenario\">{scenario}</property>"));
@@ -34,7 +45,7 @@ fn fleet_with(side: u32, world: &str, [master, crew]: [&str; 2], scenario: &str,
         let properties = format!("chargeX={x} chargeY={y} dischargePerBlock=0.1 chargePerSecond=5 {properties}");
         add("saoms.Robot", &format!("Robot{}", place + 1), &properties, "<reference name=\"world\" target=\"World\"/>");
     }
-    Fleet::of_text(text + "</composite>")
+    text + "</composite>"
 }
 
 fn count(report: &RunReport, section: &str, name: &str) -> i64 {
@@ -164,6 +175,40 @@ fn of_equally_close_luggage_the_one_with_the_longer_way_goes_first() {
     let scenario = "at 1s luggage (0,10) to (0,12); at 1s luggage (10,0) to (20,10)";
     let run = delivers(&fleet(22, "assignment=optimal", scenario, &[(0, 0, "")]), 1, 2);
     assert_eq!(taken(&run, "Robot1"), ["2", "1"], "{}", run.log());
+}
+
+#[test]
+fn who_sleeps_is_woken_for_luggage_that_nobody_awake_can_bring() {
+    // To the first piece no way leads for robot 1, to the second one its battery never lasts.
+    let wall = format!("map={}", ["...@..."; 3].join("&#10;"));
+    let near = "at 5s luggage (4,0) to (6,2)";
+    let far = "at 5s luggage (57,0) to (59,2)";
+    for (world, scenario, at) in [(wall.as_str(), near, "4"), ("height=3 width=60", far, "56")] {
+        for policy in ["oldest", "optimal"] {
+            let robots = [("0", ""), (at, "asleep=true")];
+            let robots = robots.map(|(x, more)| (x.parse().unwrap(), 1, more));
+            let world = format!("moveTime=100ms {world}");
+            let master = format!("assignment={policy}");
+            let mut text = fleet_text("", &world, [&master, ""], scenario, &robots);
+            text = text.replace(">0.1<", ">1<");
+            let run = delivers(&Fleet::of_text(text), 1, 1);
+            assert!(run.time_s < 20.0, "{policy}: {}", run.log());
+            assert!(run.log_of("Robot2").iter().any(|line| line.starts_with("takes luggage 1")), "{}", run.log());
+        }
+    }
+}
+
+#[test]
+fn luggage_to_which_no_way_leads_is_given_up() {
+    let world = format!("moveTime=100ms map={}", ["...@..."; 3].join("&#10;"));
+    let scenario = "at 1s breakdown Robot2; at 3s luggage (4,0) to (6,2)";
+    for policy in ["oldest", "optimal"] {
+        let masters = [&format!("assignment={policy}"), ""];
+        let text = fleet_text("", &world, masters, scenario, &[(0, 1, ""), (6, 1, "")]);
+        let run = Fleet::of_text(text).run(1, HOUR);
+        assert_eq!(run.outcome.status, RunStatus::Incomplete, "{}", run.log());
+        assert_eq!(count(&run, "luggage", "given_up"), 1, "{}", run.log());
+    }
 }
 
 #[test]

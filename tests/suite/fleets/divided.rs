@@ -156,3 +156,21 @@ fn check_holds_masters_to_the_zones_of_their_site() {
         site.replace("<property name=\"number\">1<", "<property name=\"number\">9<").replace(&zone(1), &zone(9));
     assert!(Fleet::of_text(other).diagnostics().contains("no master has `zone` 1"));
 }
+
+#[test]
+fn masters_do_not_call_a_robot_on_its_way_back_and_forth() {
+    // The robot passes through the zone of the other master, and says on its last move to luggage that it is there.
+    let scenario = "at 1s luggage (10,5) to (3,2); at 3s luggage (14,5) to (14,8); \
+        from 4s every 1s 6 times luggage (8,0)..(15,9) to (8,0)..(15,9)";
+    for robots in [&[(17, 7)][..], &[(17, 7), (6, 1)]] {
+        let text = text(scenario, robots, "dischargePerBlock=0.1").replace(">200ms<", ">500ms<");
+        for policy in ["optimal", "oldest"] {
+            let run = delivers(&Fleet::of_text(text.replace(">optimal<", &format!(">{policy}<"))), 1, 8);
+            for robot in ["Robot1", "Robot2"] {
+                // Its own master may have found something better for it.
+                let taken = run.log_of(robot).iter().filter(|line| line.starts_with("takes luggage")).count();
+                assert!(taken <= 12, "{policy}: {}", run.log());
+            }
+        }
+    }
+}

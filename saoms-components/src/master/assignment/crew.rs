@@ -59,6 +59,10 @@ pub struct Member {
     handed_back: u32,
     /// True if it works for another master, as its position says.
     engaged: bool,
+    /// The luggage of another master that it brings, as far as that was heard.
+    elsewhere: Option<u32>,
+    /// When it said the last of what was heard about luggage of other masters.
+    elsewhere_at: Time,
     /// True if it is out of earshot, with a job.
     away: bool,
     /// True if it was not heard for the time of a lease, until it is heard again.
@@ -115,9 +119,15 @@ impl Crew {
         self.free.iter().filter_map(|robot| self.members.get(robot)).filter(move |member| member.until <= now)
     }
 
-    /// True if a robot is awake.
-    pub(super) fn is_anybody_awake(&self) -> bool {
-        self.members.values().any(|member| !member.asleep)
+    /// Robots that are awake.
+    pub(super) fn awake(&self) -> impl Iterator<Item = &Member> {
+        self.members.values().filter(|member| !member.asleep)
+    }
+
+    /// Robots that sleep and that may be asked, by number.
+    pub(super) fn asleep(&self, now: Time) -> impl Iterator<Item = &Member> {
+        let may = move |member: &&Member| member.asleep && member.asked.is_none() && member.until <= now;
+        self.members.values().filter(may)
     }
 
     /// All robots.
@@ -200,15 +210,17 @@ impl Crew {
         self.unanswered.retain(|(robot, luggage, _)| (*robot, *luggage) != (said.robot, said.luggage));
         let Some(member) = self.members.get_mut(&said.robot) else { return };
         let luggage = Some(said.luggage);
-        (member.block, member.engaged, member.lapsed) = (said.block, false, false);
+        (member.block, member.lapsed) = (said.block, false);
         match said.stage {
             LuggageStage::Taken => {
                 (member.job, member.asked, member.collected) = (luggage, None, false);
                 (member.handed_back, member.withdrawn) = (0, None);
+                (member.engaged, member.elsewhere) = (false, None);
             }
             LuggageStage::Delivered | LuggageStage::Refused | LuggageStage::GivenUp | LuggageStage::Release => {
                 if member.job == luggage {
-                    (member.job, member.until) = (None, now);
+                    // Until then its positions told of work for this master.
+                    (member.job, member.until, member.engaged) = (None, now, false);
                 } else if member.asked == luggage && said.stage == LuggageStage::Release {
                     member.until = now + rest.saturating_mul(1 << member.handed_back);
                     member.handed_back = (member.handed_back + 1).min(DOUBLED);
@@ -219,6 +231,24 @@ impl Crew {
             LuggageStage::Request | LuggageStage::Interest => return,
         }
         self.changed = true;
+        self.sort(said.robot);
+    }
+
+    /// Handles what a robot said about luggage of another master. Where it is on its last move to its goal, its
+    /// position does not tell that it works.
+    pub(super) fn hear_elsewhere(&mut self, said: &EventLuggage, sent: Time) {
+        let Some(member) = self.members.get_mut(&said.robot) else { return };
+        if sent < member.elsewhere_at.max(member.took_at) {
+            return;
+        }
+        member.elsewhere_at = sent;
+        match said.stage {
+            LuggageStage::Taken => member.elsewhere = Some(said.luggage),
+            LuggageStage::Delivered | LuggageStage::Refused | LuggageStage::GivenUp | LuggageStage::Release => {
+                self.changed |= member.elsewhere.take_if(|luggage| *luggage == said.luggage).is_some();
+            }
+            LuggageStage::Request | LuggageStage::Interest => return,
+        }
         self.sort(said.robot);
     }
 
@@ -271,8 +301,8 @@ impl Crew {
         is_late && is_asked && said.stage == LuggageStage::Release
     }
 
-    /// Handles a call for help, or who follows it.
-    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation) {
+    /// Handles a call for help, or who follows it, about luggage of this master or of another one.
+    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation, is_own: bool) {
         let Some(job) = situation.job() else { return };
         let (robot, luggage) = match situation.stage {
             CriticalStage::Request => (situation.critical, None),
@@ -280,7 +310,10 @@ impl Crew {
             CriticalStage::Intention | CriticalStage::Release | CriticalStage::StandsIn => return,
         };
         if let Some(member) = self.members.get_mut(&robot) {
-            (member.job, member.collected) = (luggage, true);
+            match is_own {
+                true => (member.job, member.collected) = (luggage, true),
+                false => member.elsewhere = luggage,
+            }
             self.sort(robot);
         }
     }
@@ -359,7 +392,8 @@ impl Crew {
         }
         let (is_free, is_asked) = self.members.get(&robot).map_or((false, false), |member| {
             let has_job = member.job.is_some() || member.asked.is_some();
-            (!(member.asleep || has_job || member.engaged || member.away || member.lapsed), member.asked.is_some())
+            let works = has_job || member.engaged || member.elsewhere.is_some();
+            (!(member.asleep || works || member.away || member.lapsed), member.asked.is_some())
         });
         let note = |set: &mut BTreeSet<u32>, is_in: bool| {
             if is_in {

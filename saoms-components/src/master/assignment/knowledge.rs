@@ -13,7 +13,7 @@ use crate::grid::Block;
 use crate::master::event_filter::EventFilter;
 use crate::master::open_luggage::{Lapsed, OpenLuggage, WaitingPiece};
 use crate::master::part::{Early, Part};
-use crate::messages::{Assignment, EventLuggage, Fault, Lease, LuggageStage, Position, RobotList};
+use crate::messages::{Assignment, CriticalSituation, EventLuggage, Fault, Lease, LuggageStage, Position, RobotList};
 use crate::robot::{HEARD, Job};
 use crate::validation::{MessageValidator, Validate};
 
@@ -151,7 +151,7 @@ impl MasterEnvironmentKnowledge {
         });
         let with_piece = on_the_way.filter_map(|member| {
             let piece = self.open.job(member.job?).filter(|piece| piece.only.is_none())?;
-            Some((Candidate { robot: member.robot, block: member.block }, piece))
+            Some((Candidate::of(member), piece))
         });
         with_piece.collect()
     }
@@ -161,7 +161,7 @@ impl MasterEnvironmentKnowledge {
         let carrying = self.crew.members().filter(|member| member.collected);
         let with_job = carrying.filter_map(|member| {
             let piece = self.open.job(member.job?)?;
-            Some((Candidate { robot: member.robot, block: member.block }, piece.job))
+            Some((Candidate::of(member), piece.job))
         });
         with_job.collect()
     }
@@ -253,9 +253,24 @@ impl MasterEnvironmentKnowledge {
         self.part.as_ref().is_none_or(Part::is_first)
     }
 
-    /// True unless this is about luggage of another master.
-    pub(in crate::master) fn is_about_own(&self, said: &EventLuggage) -> bool {
-        self.part.is_none() || self.open.job(said.luggage).is_some()
+    /// True unless this is luggage of another master.
+    pub(in crate::master) fn is_own(&self, luggage: u32) -> bool {
+        self.part.is_none() || self.open.job(luggage).is_some()
+    }
+
+    /// Handles what a robot said about luggage of another master, which judges the message.
+    pub(in crate::master) fn hear_elsewhere(&mut self, said: &EventLuggage, header: Header) {
+        let is_known = self.crew.get(said.robot).is_some();
+        if is_known && said.validate(header.sender, &mut self.validator, self.filter.area()).is_ok() {
+            self.crew.hear_elsewhere(said, header.sent);
+        }
+    }
+
+    /// Handles a call for help, or who follows it.
+    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation) {
+        let is_own = situation.job().is_none_or(|job| self.is_own(job.luggage));
+        self.open.hear_situation(situation);
+        self.crew.hear_situation(situation, is_own);
     }
 
     /// Hears of robots around the part, farther away the longer luggage waits.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::crew::Member;
 use crate::grid::Block;
 
 /// A robot that can take a job.
@@ -9,6 +10,14 @@ use crate::grid::Block;
 pub(super) struct Candidate {
     pub(super) robot: u32,
     pub(super) block: Block,
+    /// True if it sleeps: it brings only what nobody who is awake is going to bring.
+    pub(super) asleep: bool,
+}
+
+impl Candidate {
+    pub(super) fn of(member: &Member) -> Candidate {
+        Candidate { robot: member.robot, block: member.block, asleep: member.asleep }
+    }
 }
 
 /// Luggage that waits for a robot.

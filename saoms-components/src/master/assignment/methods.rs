@@ -32,6 +32,10 @@ const WORTH: i64 = 6;
 /// The same where that other piece has to be taken back from another robot first.
 const EXCHANGE: i64 = 6;
 
+/// What counts as the number of blocks where no way leads: such a robot is asked last, and refuses the luggage, so that
+/// others hear that it cannot bring it.
+const NO_WAY: u32 = 1 << 20;
+
 /// What a moment of waiting counts for urgent luggage, in blocks for each move.
 const URGENCY: i64 = 100;
 
@@ -50,15 +54,19 @@ impl MasterEnvironmentKnowledge {
     }
 
     fn candidates(&self, now: Time) -> Vec<Candidate> {
-        let free = self.crew.free(now).map(|member| Candidate { robot: member.robot, block: member.block });
-        let free: Vec<Candidate> = free.collect();
-        if !free.is_empty() || self.crew.is_anybody_awake() {
-            return free;
+        let mut robots: Vec<Candidate> = self.crew.free(now).map(Candidate::of).collect();
+        let mut asleep = self.crew.asleep(now).map(Candidate::of).peekable();
+        if asleep.peek().is_some()
+            && self.open.waiting().take(LOOKED_AT).any(|piece| self.is_for_asleep(piece.job.luggage))
+        {
+            robots.extend(asleep);
         }
-        // Nobody else is going to bring anything.
-        let asleep =
-            self.crew.members().filter(|member| member.asleep && member.asked.is_none() && member.until <= now);
-        asleep.map(|member| Candidate { robot: member.robot, block: member.block }).collect()
+        robots
+    }
+
+    /// True if nobody who is awake is going to bring the luggage.
+    fn is_for_asleep(&self, luggage: u32) -> bool {
+        self.crew.awake().all(|member| self.open.is_refused(luggage, member.robot))
     }
 
     fn order(&self, robot: u32, luggage: u32, withdrawn: bool) -> Option<Order> {
@@ -66,8 +74,8 @@ impl MasterEnvironmentKnowledge {
         Some(Order { robot, luggage, from: job.from, to: job.to, withdrawn })
     }
 
-    fn may(&self, robot: &Candidate, task: &Task) -> bool {
-        !self.open.is_refused(task.luggage, robot.robot)
+    fn may(&self, robot: &Candidate, luggage: u32) -> bool {
+        !self.open.is_refused(luggage, robot.robot) && (!robot.asleep || self.is_for_asleep(luggage))
     }
 
     fn orders(&self, robots: &[Candidate], tasks: &[Task], pairs: Vec<(usize, usize)>) -> Vec<Order> {
@@ -98,7 +106,7 @@ pub(super) fn far(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<Orde
         return Vec::new();
     }
     let robots = knowledge.candidates(now);
-    let pairs = each_to_closest(&tasks, &robots, |robot, task| knowledge.may(robot, task));
+    let pairs = each_to_closest(&tasks, &robots, |robot, task| knowledge.may(robot, task.luggage));
     knowledge.orders(&robots, &tasks, pairs)
 }
 
@@ -109,7 +117,7 @@ fn visits(knowledge: &MasterEnvironmentKnowledge, robots: &mut Vec<Candidate>) -
     }
     let own = knowledge.open.waiting().filter(|piece| piece.only.is_some()).take(LOOKED_AT);
     let tasks: Vec<Task> = own.map(|piece| task(piece, u32::MAX)).collect();
-    let pairs = each_to_closest(&tasks, robots, |robot, task| knowledge.may(robot, task));
+    let pairs = each_to_closest(&tasks, robots, |robot, task| knowledge.may(robot, task.luggage));
     let orders = knowledge.orders(robots, &tasks, pairs);
     robots.retain(|robot| orders.iter().all(|order| order.robot != robot.robot));
     orders
@@ -125,15 +133,15 @@ pub(super) fn oldest(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<O
     let waiting = knowledge.open.waiting().filter(|piece| piece.only.is_none()).take(LOOKED_AT);
     let tasks: Vec<Task> = waiting.map(|piece| task(piece, u32::MAX)).collect();
     if robots.len() > MATCHED {
-        let pairs = each_to_closest(&tasks, &robots, |robot, task| knowledge.may(robot, task));
+        let pairs = each_to_closest(&tasks, &robots, |robot, task| knowledge.may(robot, task.luggage));
         orders.extend(knowledge.orders(&robots, &tasks, pairs));
         return orders;
     }
     let mut ways = Ways::on(knowledge.filter.area());
     let mut free = robots;
     for task in tasks.iter().filter(|_| !free.is_empty()).collect::<Vec<_>>() {
-        let able = free.iter().enumerate().filter(|(_, robot)| knowledge.may(robot, task));
-        let way = able.filter_map(|(place, robot)| Some((ways.between(robot.block, task.from)?, place)));
+        let able = free.iter().enumerate().filter(|(_, robot)| knowledge.may(robot, task.luggage));
+        let way = able.map(|(place, robot)| (ways.between(robot.block, task.from).unwrap_or(NO_WAY), place));
         let Some((_, place)) = way.min() else { continue };
         orders.extend(knowledge.order(free.remove(place).robot, task.luggage, false));
         if free.is_empty() {
@@ -177,10 +185,10 @@ pub(super) fn optimal(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<
     let mut costs: Vec<Vec<i64>> = Vec::new();
     for (row, robot) in robots.iter().enumerate() {
         let cost = |(column, piece): (usize, &WaitingPiece)| {
-            if knowledge.open.is_refused(piece.job.luggage, robot.robot) {
+            if !knowledge.may(robot, piece.job.luggage) {
                 return NEVER;
             }
-            let Some(way) = ways.between(robot.block, piece.job.from) else { return NEVER };
+            let way = ways.between(robot.block, piece.job.from).unwrap_or(NO_WAY);
             let change = match own(row) {
                 Some(own) if own == column => -WORTH,
                 _ if column >= first_taken => EXCHANGE,
@@ -196,7 +204,7 @@ pub(super) fn optimal(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<
         let Some(rest) = ways.between(robot.block, job.to) else { continue };
         let cost = |(column, piece): (usize, &WaitingPiece)| {
             let is_kept = column >= first_taken || urgency(piece) > 0;
-            if is_kept || knowledge.open.is_refused(piece.job.luggage, robot.robot) {
+            if is_kept || !knowledge.may(&robot, piece.job.luggage) {
                 return NEVER;
             }
             let Some(way) = ways.between(job.to, piece.job.from) else { return NEVER };
@@ -230,7 +238,7 @@ fn many(
     let patience = knowledge.crew.step().saturating_mul(PATIENCE);
     let urgent = pieces.partition_point(|piece| now.since(piece.since) >= patience);
     let tasks: Vec<Task> = pieces.into_iter().map(|piece| task(piece, u32::MAX)).collect();
-    let may = |robot: &Candidate, task: &Task| knowledge.may(robot, task);
+    let may = |robot: &Candidate, task: &Task| knowledge.may(robot, task.luggage);
     let (urgent, others) = tasks.split_at(urgent);
     let first = each_to_closest(urgent, &robots, may);
     let taken: std::collections::HashSet<usize> = first.iter().map(|(robot, _)| *robot).collect();

@@ -216,8 +216,7 @@ impl Component for MasterEnvironment {
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
             let is_own = header.sender == context.sender();
             if !is_own && self.knowledge.accepts(situation, header, context) {
-                self.knowledge.open.hear_situation(situation);
-                self.knowledge.crew.hear_situation(situation);
+                self.knowledge.hear_situation(situation);
             }
         }
         for (header, removal) in context.receive(&self.removals).with_headers() {
@@ -420,10 +419,13 @@ impl MasterEnvironment {
 
     /// Handles a message about luggage from a robot, or from another component on the robots' topic.
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
-        if header.sender == context.sender()
-            || !self.knowledge.is_about_own(said)
-            || !self.knowledge.accepts(said, header, context)
-        {
+        if header.sender == context.sender() {
+            return;
+        }
+        if !self.knowledge.is_own(said.luggage) {
+            return self.knowledge.hear_elsewhere(said, header);
+        }
+        if !self.knowledge.accepts(said, header, context) {
             return;
         }
         if said.stage == LuggageStage::Delivered {

@@ -5,7 +5,7 @@
 //! luggage is the robot's until it says itself what became of it, or a person does. No clock is needed for that: a
 //! robot whose program was stopped for any time between the answer and the collecting collects what is still its own.
 
-use saoms_api::{Cause, Context, Failure, Field, Time};
+use saoms_api::{Context, Failure, Field, Header, Time};
 
 use super::Job;
 use crate::hardware::{Action, ActionKind};
@@ -68,11 +68,11 @@ impl RobotKnowledge {
     }
 
     /// Takes what a master answers about a lease. One that ends takes the luggage back.
-    pub(in crate::robot) fn hear_lease(&mut self, answer: &Assignment, cause: Cause) {
+    pub(in crate::robot) fn hear_lease(&mut self, answer: &Assignment, header: Header) {
         let is_over = self.lease.as_mut().is_some_and(|lease| lease.answer(answer.lease, answer.withdrawn));
         if let Some(Job { luggage, from, to }) = self.job.filter(|_| is_over) {
             let withdrawn = Assignment { luggage, from, to, ..answer.clone() };
-            self.lists.requests.hear_assignment(&withdrawn, false, cause);
+            self.lists.requests.hear_assignment(&withdrawn, header);
         }
     }
 

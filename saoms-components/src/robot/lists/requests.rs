@@ -117,6 +117,8 @@ pub struct Assigned {
     pub job: Job,
     /// True if it is for another robot now.
     pub withdrawn: bool,
+    /// Number of the component of the master.
+    pub master: u32,
     /// Cause of the assignment.
     pub cause: Cause,
 }
@@ -215,16 +217,21 @@ impl Requests {
     }
 
     /// Handles what a master assigned to this robot, in this program or in another one.
-    pub fn hear_assignment(&mut self, assignment: &Assignment, is_from_elsewhere: bool, cause: Cause) {
+    pub fn hear_assignment(&mut self, assignment: &Assignment, header: Header) {
         let Assignment { luggage, from, to, withdrawn, .. } = *assignment;
-        if is_from_elsewhere && !withdrawn {
+        if header.is_from_elsewhere() && !withdrawn {
             self.of_elsewhere.insert(luggage);
         }
         self.assigned.retain(|known| known.job.luggage != luggage);
         if self.assigned.len() >= MOST_ASSIGNED {
             self.assigned.remove(0);
         }
-        self.assigned.push(Assigned { job: Job { luggage, from, to }, withdrawn, cause });
+        self.assigned.push(Assigned {
+            job: Job { luggage, from, to },
+            withdrawn,
+            master: header.sender,
+            cause: header.cause,
+        });
     }
 
     /// True if luggage was announced from another program.

@@ -49,6 +49,7 @@ struct Memory {
     failures: u32,
     untold: Option<JobEnd>,
     is_assigned: bool,
+    assigned_by: u32,
     lingers: u32,
     loaded: bool,
     said_homeward: bool,
@@ -119,6 +120,7 @@ impl RobotKnowledge {
             failures: self.failures,
             untold: self.untold,
             is_assigned: self.is_assigned,
+            assigned_by: self.assigned_by,
             lingers: self.lingers,
             loaded: self.loaded,
             said_homeward: self.said_homeward,
@@ -155,7 +157,8 @@ impl RobotKnowledge {
         self.note_running();
         (self.begun, self.offers_help) = (memory.begun, memory.offers_help);
         (self.trouble, self.failures) = (memory.trouble, memory.failures);
-        (self.untold, self.is_assigned, self.lingers) = (memory.untold, memory.is_assigned, memory.lingers);
+        (self.untold, self.lingers) = (memory.untold, memory.lingers);
+        (self.is_assigned, self.assigned_by) = (memory.is_assigned, memory.assigned_by);
         (self.loaded, self.said_homeward) = (memory.loaded, memory.said_homeward);
         (self.energy, self.leg, self.lease) = (memory.energy, memory.leg, memory.lease.map(Box::new));
         self.traffic.restore(memory.traffic);

@@ -10,7 +10,7 @@ use super::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
 
 /// The oldest assignment that this robot has to answer, and its cause.
 pub(super) fn look_at_assignment(knowledge: &mut RobotKnowledge) -> Option<(SafeLuggageSymptom, Cause)> {
-    while let Some(Assigned { job, withdrawn, cause }) = knowledge.lists.requests.answer_assignment() {
+    while let Some(Assigned { job, withdrawn, master, cause }) = knowledge.lists.requests.answer_assignment() {
         let is_own = knowledge.job.is_some_and(|own| own.luggage == job.luggage);
         if withdrawn {
             let collects = |kind| matches!(kind, ActionKind::Collect | ActionKind::Deposit);
@@ -22,7 +22,11 @@ pub(super) fn look_at_assignment(knowledge: &mut RobotKnowledge) -> Option<(Safe
             return Some((SafeLuggageSymptom::Withdrawn(job), cause));
         }
         if !is_own {
-            return Some((SafeLuggageSymptom::Assigned { job, is_free: knowledge.is_free_for_assigned() }, cause));
+            let is_free = knowledge.is_free_for(master);
+            if is_free {
+                knowledge.assigned_by = master;
+            }
+            return Some((SafeLuggageSymptom::Assigned { job, is_free }, cause));
         }
     }
     None
@@ -46,10 +50,12 @@ pub(super) fn decide_about_assigned(job: Job, knowledge: &mut RobotKnowledge) ->
 }
 
 impl RobotKnowledge {
-    /// True if it can take assigned luggage: it has no job, or one that a master assigned and that it can leave.
-    fn is_free_for_assigned(&self) -> bool {
+    /// True if it can take luggage that this master assigns: it has no job, or one that the same master assigned and
+    /// that it can leave. Masters that do not know of each other's jobs would call it back and forth.
+    fn is_free_for(&self, master: u32) -> bool {
         let variables = &self.variables;
-        let can_leave = self.job.is_some() && self.is_assigned && !variables.has_luggage && !self.offers_help;
+        let is_from_master = self.is_assigned && self.assigned_by == master;
+        let can_leave = self.job.is_some() && is_from_master && !variables.has_luggage && !self.offers_help;
         let is_idle = (self.is_free() && self.job.is_none() || can_leave) && self.untold.is_none();
         let may = !variables.critical && !variables.asleep && !self.must_charge && !self.relieved && !self.stopped;
         is_idle && may && !self.hardware.is_handling()
