@@ -30,7 +30,8 @@ pub struct MessageBrokerProperties {
     password_file: Option<String>,
     /// The path of a file with further users, which no other user can read: lines `user:password`.
     users: Option<String>,
-    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC`; `*` is all topics. Without any, all users
+    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, and `controls` lets
+    /// the user ask all programs, and give them orders, with `--url`. Without any, all users
     /// may do everything; with some, those that are not named may do nothing.
     access: Vec<String>,
     /// The path of a file (PEM) with the certificates of those who vouch for programs: then only programs with such a
@@ -99,10 +100,14 @@ fn access_of(text: &str) -> Result<Access, String> {
     }
     for right in rights.split(';').map(str::trim).filter(|right| !right.is_empty()) {
         let (verb, topics) = right.split_once(char::is_whitespace).unwrap_or((right, ""));
+        if right == "controls" {
+            access.controls = true;
+            continue;
+        }
         let of = match verb {
             "reads" => &mut access.reads,
             "writes" => &mut access.writes,
-            _ => return Err(format!("found `{verb}`, expected `reads` or `writes` and topics")),
+            _ => return Err(format!("found `{verb}`, expected `reads` or `writes` and topics, or `controls` alone")),
         };
         let names: Vec<String> =
             topics.split(',').map(|topic| topic.trim().to_owned()).filter(|topic| !topic.is_empty()).collect();
@@ -145,11 +150,14 @@ mod tests {
         let access = access_of("viewer: reads POSTOPIC, Event luggage MS; writes *").unwrap();
         assert!(access.reads.contain("Event luggage MS") && !access.reads.contain("ESTOP"));
         assert_eq!((access.user.as_str(), access.writes), ("viewer", Topics::All));
-        assert_eq!(access_of("viewer:").unwrap().reads, Topics::default());
+        let viewer = access_of("viewer:").unwrap();
+        assert!(viewer.reads == Topics::default() && !viewer.controls);
+        assert!(access_of("ada: reads *; controls").unwrap().controls);
         for (wrong, message) in [
             ("viewer reads A", "no `:`"),
             (": reads A", "no name of a user"),
             ("viewer: sees A", "found `sees`"),
+            ("viewer: controls A", "found `controls`"),
             ("viewer: reads", "no topic behind `reads`"),
         ] {
             assert!(access_of(wrong).unwrap_err().contains(message), "{wrong}");

@@ -25,6 +25,6 @@ pub use log::{LogLine, LogTail};
 pub use metrics::{METRICS, Metric};
 pub use network::{NetworkError, NetworkListener};
 pub use place::{Listener, default_socket, token_beside};
-pub use server::{ControlServer, ControlledFleet, Places, SentLine, openapi};
+pub use server::{ControlServer, ControlledFleet, NetworkDoor, Places, SentLine, openapi, refuse};
 pub use token::{Token, TokenFile};
 pub use topics::TopicWatch;

@@ -58,6 +58,8 @@ pub struct Access {
     pub reads: Topics,
     /// The topics that they may publish.
     pub writes: Topics,
+    /// True if the user may control the programs of the network.
+    pub controls: bool,
 }
 
 /// Topics of a network, by their names on the bus.

@@ -7,6 +7,7 @@ mod connections;
 mod fleet;
 mod logs;
 mod orders;
+mod over_network;
 mod routes;
 mod time;
 mod topics;
@@ -22,6 +23,7 @@ use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
 pub use fleet::{ControlledFleet, SentLine};
+pub use over_network::{NetworkDoor, refuse};
 pub use routes::openapi;
 
 use access::{Access, guarded};
@@ -39,6 +41,7 @@ pub struct ControlServer {
     /// Dropped to end the server.
     end: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
+    door: NetworkDoor,
     /// Removed after the server has ended.
     _file: Option<OwnFile>,
 }
@@ -63,6 +66,7 @@ impl ControlServer {
         let runtime = Builder::new_current_thread().enable_all().thread_name("saoms-control").build()?;
         let (log, counts) = (Arc::clone(&fleet.log), Arc::clone(&fleet.counts));
         let router: Router = routes::router(Arc::new(fleet));
+        let door = NetworkDoor { router: router.clone(), runtime: runtime.handle().clone() };
         {
             let _entered = runtime.enter();
             if let Some(socket) = socket {
@@ -91,7 +95,12 @@ impl ControlServer {
             runtime.shutdown_background();
         };
         let thread = thread::Builder::new().name("saoms-control".to_owned()).spawn(serve)?;
-        Ok(ControlServer { end: Some(end), thread: Some(thread), _file: file })
+        Ok(ControlServer { end: Some(end), thread: Some(thread), door, _file: file })
+    }
+
+    /// The server for requests that come over the network of the fleet.
+    pub fn door(&self) -> NetworkDoor {
+        self.door.clone()
     }
 }
 

@@ -1,5 +1,7 @@
 //! The thread of a program's part of a network.
 
+mod link;
+
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -8,6 +10,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use saoms_api::Level;
 use saoms_api::host::{cdr, shown};
 
+use super::control::{Answer, Ask, Asked, Requests};
 use super::exchange::call::Outcome;
 use super::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
 use super::fleet::{Fleet, FromNetwork, Membership};
@@ -17,6 +20,7 @@ use super::ticket::Ticket;
 use super::told::told;
 use super::transport::TransportSession;
 use super::{FROM_OUTSIDE, key};
+use link::Link;
 
 /// Tokens of subscriptions.
 const ALIVE: u64 = 1;
@@ -25,6 +29,7 @@ const COVERED: u64 = 3;
 const ACCESS: u64 = 4;
 const CALL: u64 = 5;
 const REPLY: u64 = 6;
+const CONTROL: u64 = 7;
 /// From here on each topic has two: one for its messages, one for those that this program asked for again.
 const FIRST_OF_TOPICS: u64 = 16;
 
@@ -42,9 +47,8 @@ const ROOM_AGAIN: Duration = Duration::from_millis(1);
 const MOST_UNDELIVERED: usize = 4_096;
 /// Messages of components after which the network gets what they say, at most.
 const MOST_AT_ONCE: usize = 1_024;
-/// The kinds of alerts of networks.
+/// The kind of alerts of programs that give no sign of life.
 const UNREACHABLE: &str = "unreachable";
-const LINK: &str = "link";
 /// Time from one word of a router about rights to the next.
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 /// Time for which a program that ends waits until others have received its events.
@@ -69,7 +73,7 @@ impl Client {
         membership: Membership,
         fleet: impl Fleet,
     ) -> Result<Client, String> {
-        let (program, patience) = (settings.program, settings.patience);
+        let (program, patience, name) = (settings.program, settings.patience, settings.name.clone());
         // Those of other versions, too: they are told.
         session.subscribe(&key::alive_of_all(), ALIVE)?;
         session.subscribe(&key::ask(program), ASK)?;
@@ -78,6 +82,7 @@ impl Client {
             session.subscribe(&key::call(program), CALL)?;
             session.subscribe(&key::reply(program), REPLY)?;
         }
+        session.subscribe(&key::control_of_all(), CONTROL)?;
         if membership.user.is_some() {
             session.subscribe(&key::access(), ACCESS)?;
         }
@@ -100,6 +105,9 @@ impl Client {
             others: BTreeSet::new(),
             tickets: HashMap::new(),
             link: Link::default(),
+            requests: Requests::default(),
+            port: Arc::clone(port),
+            name,
         };
         let own = Arc::clone(port);
         let thread = std::thread::Builder::new().name("saoms-network".to_owned());
@@ -152,15 +160,11 @@ struct Member<F> {
     /// Where the outcomes of calls go, by their lines and numbers.
     tickets: HashMap<(u64, u64), Arc<Ticket>>,
     link: Link,
-}
-
-/// The link to the other programs.
-#[derive(Debug, Default)]
-struct Link {
-    /// Since when the transport says that it is down.
-    down: Option<u64>,
-    /// True if it counts as lost.
-    is_lost: bool,
+    /// The requests of operators.
+    requests: Requests,
+    port: Arc<Port>,
+    /// The name of the program for people.
+    name: String,
 }
 
 impl<F: Fleet> Member<F> {
@@ -182,6 +186,7 @@ impl<F: Fleet> Member<F> {
             self.fleet.deliver(&mut self.undelivered);
             self.agree(now);
             self.watch_link(now);
+            self.requests.forget(now);
             if is_closed {
                 let since = *ending.get_or_insert_with(Instant::now);
                 let is_complete = self.exchange.is_complete() && !self.exchange.awaits_answers();
@@ -214,22 +219,6 @@ impl<F: Fleet> Member<F> {
         let since = self.done_since.filter(|_| is_done);
         self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
         self.done_since = is_done.then(|| since.unwrap_or(now));
-    }
-
-    /// Tells that the link is lost, and does what follows from that: it is down for the patience of this program, or
-    /// none of the other programs is heard.
-    fn watch_link(&mut self, now: u64) {
-        let is_down = self.link.down.is_some_and(|since| now.saturating_sub(since) > self.patience);
-        let is_lost = is_down || self.exchange.hears_nobody();
-        if std::mem::replace(&mut self.link.is_lost, is_lost) == is_lost {
-            return;
-        }
-        let url = &self.membership.url;
-        let text = format!("the link to the network `{url}` is lost: no other program is heard");
-        self.fleet.alert(LINK, url, is_lost.then_some(text));
-        if is_lost {
-            self.fleet.lose();
-        }
     }
 
     /// Tells, as the router, what users may do.
@@ -275,7 +264,7 @@ impl<F: Fleet> Member<F> {
         }
         for link in waiting.links {
             let now = self.now();
-            self.link.down = (!link.is_up).then(|| self.link.down.unwrap_or(now));
+            self.link.note(link.is_up, now);
             let (level, what) = if link.is_up { (Level::Info, "is there") } else { (Level::Warning, "was lost") };
             let reason = if link.reason.is_empty() { String::new() } else { format!(": {}", link.reason) };
             self.fleet.tell(level, format!("the link to the network {what}{reason}"));
@@ -321,6 +310,10 @@ impl<F: Fleet> Member<F> {
             }
             FromRun::Reply { program, line, number, answer } => self.exchange.reply(program, line, number, answer),
             FromRun::Unserved { program, line, number } => self.exchange.unserved(program, line, number),
+            FromRun::Answer { asker, answer } => {
+                let answer = self.requests.answer(asker, answer, self.program, &self.name);
+                answer.into_iter().for_each(|answer| self.put_answer(asker, &answer));
+            }
             FromRun::Message { topic, mut component, to, is_state, schema, message } => {
                 if let Some(told) = self.rights.as_mut().and_then(|rights| rights.write(&topic, &component)) {
                     self.fleet.tell(Level::Error, told);
@@ -396,6 +389,17 @@ impl<F: Fleet> Member<F> {
                     self.exchange.take_reply(reply, now);
                 }
             }
+            CONTROL => {
+                let Ok(ask) = cdr::decode::<Ask>(&frame.message) else { return };
+                let asker = ask.asker;
+                match self.requests.take(ask, self.program, &self.port, now) {
+                    None => {}
+                    Some(Asked::New(request, reply)) => self.fleet.control(request, reply),
+                    Some(Asked::Again(answers)) => {
+                        answers.iter().for_each(|answer| self.put_answer(asker, answer));
+                    }
+                }
+            }
             FIRST_OF_TOPICS.. => {
                 let is_again = !(frame.token - FIRST_OF_TOPICS).is_multiple_of(2);
                 if let Some(topic) = topic(if is_again { 4 } else { 3 }) {
@@ -459,6 +463,11 @@ impl<F: Fleet> Member<F> {
         if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
             self.unsent.push_back((key, bytes, envelope));
         }
+    }
+
+    fn put_answer(&self, asker: u64, answer: &Answer) {
+        // It is asked for again if there is no room for it.
+        self.put(&key::controlled(asker), &cdr::encode(answer), None);
     }
 
     /// Puts something on the network; false if there is no room for it.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use saoms_api::Level;
 
+use super::control::{ControlRequest, Reply};
 use super::exchange::Arrived;
 use super::exchange::wire::{Request, Vote};
 use super::rights::Granted;
@@ -41,6 +42,9 @@ pub trait Fleet: Send + 'static {
     /// Tells a person that the link to the network is lost, or that a program gives no sign of life; without a text,
     /// that it is over.
     fn alert(&self, kind: &str, subject: &str, text: Option<String>);
+
+    /// Carries out a request of an operator, and answers it later. Does not wait.
+    fn control(&self, request: ControlRequest, reply: Reply);
 
     /// The link is lost: no other program was heard for the patience of this one.
     fn lose(&self);

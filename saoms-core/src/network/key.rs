@@ -9,6 +9,8 @@
 //! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
 //! | `saoms/1/call/PROGRAM` | calls of its components |
 //! | `saoms/1/reply/PROGRAM` | answers to its calls |
+//! | `saoms/1/control/ASKER` | requests of operators to programs |
+//! | `saoms/1/controlled/ASKER` | answers to this one |
 //! | `saoms/1/access` | what the router lets users do |
 //!
 //! A program is a number in hexadecimal digits. In names, whatever is not an ASCII letter, a digit, `-`, `_` or `.` is
@@ -98,6 +100,21 @@ pub fn access() -> String {
     format!("{PREFIX}/access")
 }
 
+/// The key of requests of who has this number.
+pub fn control(asker: u64) -> String {
+    format!("{PREFIX}/control/{asker:x}")
+}
+
+/// The keys of the requests of all.
+pub fn control_of_all() -> String {
+    format!("{PREFIX}/control/*")
+}
+
+/// The key of answers to who has this number.
+pub fn controlled(asker: u64) -> String {
+    format!("{PREFIX}/controlled/{asker:x}")
+}
+
 /// The keys that a user with this access may use.
 pub fn of_user(access: &Access) -> UserKeys {
     let names = |topics: &Topics| match topics {
@@ -117,6 +134,13 @@ pub fn of_user(access: &Access) -> UserKeys {
     if access.writes == Topics::All && access.reads == Topics::All {
         put.extend(calls.clone());
         subscribe.extend(calls);
+    }
+    // Each program can be asked, and answers.
+    subscribe.push(control_of_all());
+    put.push(format!("{PREFIX}/controlled/*"));
+    if access.controls {
+        put.push(control_of_all());
+        subscribe.push(format!("{PREFIX}/controlled/*"));
     }
     UserKeys { user: access.user.clone(), put, subscribe }
 }

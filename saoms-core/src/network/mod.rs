@@ -5,6 +5,7 @@
 //! and knows which programs are there.
 
 mod client;
+pub mod control;
 pub mod exchange;
 mod fleet;
 pub mod key;

@@ -7,6 +7,7 @@ use std::time::Duration;
 use saoms_api::CallError;
 use saoms_api::host::SharedMessage;
 
+use super::control::Answer;
 use super::exchange::call::{Outcome, OwnCall};
 use super::ticket::Ticket;
 use super::transport::{Delivered, Receiver};
@@ -41,6 +42,8 @@ pub(crate) enum FromRun {
     Reply { program: u64, line: u64, number: u64, answer: Result<Vec<u8>, CallError> },
     /// A call of another program did not begin in time, and does not any more.
     Unserved { program: u64, line: u64, number: u64 },
+    /// A part of the answer to a request.
+    Answer { asker: u64, answer: Answer },
 }
 
 /// A frame that arrived.

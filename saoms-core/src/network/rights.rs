@@ -28,6 +28,8 @@ pub struct UserRights {
     pub reads: Vec<String>,
     /// The topics that they may publish.
     pub writes: Vec<String>,
+    /// True if the user may control the programs.
+    pub controls: bool,
 }
 
 impl Granted {
@@ -37,8 +39,12 @@ impl Granted {
             Topics::All => vec![ALL.to_owned()],
             Topics::Some(names) => names.clone(),
         };
-        let of_user =
-            |one: &Access| UserRights { user: one.user.clone(), reads: names(&one.reads), writes: names(&one.writes) };
+        let of_user = |one: &Access| UserRights {
+            user: one.user.clone(),
+            reads: names(&one.reads),
+            writes: names(&one.writes),
+            controls: one.controls,
+        };
         Granted { users: access.iter().map(of_user).collect() }
     }
 }
@@ -148,7 +154,8 @@ mod tests {
 
     fn granted(reads: &[&str], writes: &[&str]) -> Granted {
         let topics = |names: &[&str]| Topics::Some(names.iter().map(|name| (*name).to_owned()).collect());
-        Granted::of(&[Access { user: "viewer".to_owned(), reads: topics(reads), writes: topics(writes) }])
+        let (reads, writes) = (topics(reads), topics(writes));
+        Granted::of(&[Access { user: "viewer".to_owned(), reads, writes, controls: false }])
     }
 
     #[test]

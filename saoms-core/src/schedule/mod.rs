@@ -38,7 +38,7 @@ pub use hold::{HoldError, Speed};
 pub use inject::{InjectError, InjectedContent, Injection, is_from_outside};
 pub use members::UnknownComponent;
 pub use metrics::TimerSign;
-pub use networks::NetworkedFleet;
+pub use networks::{NetworkHooks, NetworkedFleet};
 pub use order::{Order, OrderError, OrderTicket, TimedOrder};
 pub use os::realtime::RealtimeError;
 pub use os::thread::start_thread;

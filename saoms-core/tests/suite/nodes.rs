@@ -6,9 +6,10 @@ use std::time::Duration;
 
 use saoms_api::host::{Registration, cdr};
 use saoms_api::{Class, Component, Context, Failure, Message, Publisher, Subscription, Time, Topic, info};
+use saoms_core::network::control::{ControlRequest, Reply};
 use saoms_core::network::exchange::Arrived;
 use saoms_core::network::{Fleet, FromNetwork, Port};
-use saoms_core::schedule::{NetworkedFleet, RunningFleet, Settings};
+use saoms_core::schedule::{NetworkHooks, NetworkedFleet, RunningFleet, Settings};
 use saoms_lang::registry::Registry;
 
 use crate::fault::faults;
@@ -72,7 +73,7 @@ fn told(settings: Settings, others: &[&str]) -> String {
     let port: Arc<Port> = Arc::default();
     let mut network: Option<NetworkedFleet> = None;
     let fleet = RunningFleet::start_with(fleet.at("a"), settings, vec![diary.clone()], |handle| {
-        network = Some(handle.use_network("net:1", &port, || {}));
+        network = Some(handle.use_network("net:1", &port, Alone));
         Ok(())
     });
     let fleet = fleet.unwrap();
@@ -108,4 +109,13 @@ fn faults_of_messages_act_on_those_of_other_nodes() {
     let expected = "[0.000 s] A: knows B, C (not begun); hears
         [0.100 s] A: knows B, C; hears 7 of C, 7 of Stranger";
     assert_eq!(unindent(&told(settings, &["C", "B", "Stranger"])), unindent(expected));
+}
+
+/// A program that nobody asks.
+struct Alone;
+
+impl NetworkHooks for Alone {
+    fn lose(&self) {}
+
+    fn control(&self, _request: ControlRequest, _reply: Reply) {}
 }

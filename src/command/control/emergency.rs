@@ -5,11 +5,13 @@ use saoms_api::host::one_line;
 use serde_json::Value;
 
 use super::fleet::{RunningFleetArguments, escape};
+use super::over_network::{Programs, UrlArguments};
 use crate::Exit;
 
 const STOP_CODES: &str = "\
 Exit codes:
   0  the components are stopped
+  1  a program on the network of `--url` does not answer: nothing of it may be stopped
   2  there is no such component, no fleet runs, or it is not clear which one is meant";
 
 /// Emergency stop: stop machines of a running fleet at once, until `saoms release`
@@ -25,6 +27,9 @@ pub(crate) struct EmergencyStopArguments {
 
     #[command(flatten)]
     fleet: RunningFleetArguments,
+
+    #[command(flatten)]
+    network: UrlArguments,
 }
 
 const RELEASE_CODES: &str = "\
@@ -45,6 +50,10 @@ pub(crate) struct ReleaseArguments {
 }
 
 pub(crate) fn estop(arguments: &EmergencyStopArguments) -> Exit {
+    if let Some(programs) = arguments.network.open(&arguments.fleet) {
+        let stopped = programs.and_then(|mut programs| stop_over_network(arguments, &mut programs));
+        return stopped.unwrap_or_else(|exit| exit);
+    }
     give(&arguments.fleet, "estop", &arguments.components, "stopped")
 }
 
@@ -58,19 +67,49 @@ pub(super) fn by() -> String {
     if by.is_empty() { String::new() } else { format!("?by={}", escape(&by)) }
 }
 
+/// Stops components in all programs of a network.
+fn stop_over_network(arguments: &EmergencyStopArguments, programs: &mut Programs<'_>) -> Result<Exit, Exit> {
+    let path = format!("/v1/estop{}", by());
+    let (mut stopped, mut is_silent, mut first) = (Vec::<(String, Value)>::new(), false, None);
+    // Each component is in one of them.
+    let each: Vec<&str> = match arguments.components.as_slice() {
+        [] => vec![""],
+        components => components.iter().map(String::as_str).collect(),
+    };
+    for components in each {
+        match programs.answers(("POST", &path, components), |_| true) {
+            Ok((answers, silent)) => {
+                is_silent |= silent;
+                stopped.extend(answers);
+            }
+            Err(exit) => _ = first.get_or_insert(exit),
+        }
+    }
+    if !stopped.is_empty() {
+        programs.print(&stopped, |answer| said(answer, "stopped"));
+    }
+    match first {
+        Some(exit) => Err(exit),
+        None => Ok(if is_silent { Exit::Failed } else { Exit::Done }),
+    }
+}
+
 fn give(fleet: &RunningFleetArguments, order: &str, components: &[String], done: &str) -> Exit {
     let query = by();
     let answer = match fleet.ask("POST", &format!("/v1/{order}{query}"), &components.join(" ")) {
         Ok(answer) => answer,
         Err(exit) => return exit,
     };
-    fleet.show(&answer, || {
-        let names = answer["reply"].as_array().into_iter().flatten().filter_map(Value::as_str);
-        let names: Vec<String> = names.map(|name| one_line(name).into_owned()).collect();
-        match names.is_empty() {
-            true => format!("nothing is {done}\n"),
-            false => format!("{done}: {}\n", names.join(", ")),
-        }
-    });
+    fleet.show(&answer, || said(&answer, done));
     Exit::Done
+}
+
+/// What an answer says for people.
+fn said(answer: &Value, done: &str) -> String {
+    let names = answer["reply"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    let names: Vec<String> = names.map(|name| one_line(name).into_owned()).collect();
+    match names.is_empty() {
+        true => format!("nothing is {done}\n"),
+        false => format!("{done}: {}\n", names.join(", ")),
+    }
 }

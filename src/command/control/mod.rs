@@ -5,6 +5,7 @@ mod emergency;
 mod fleet;
 mod logs;
 mod orders;
+mod over_network;
 mod ps;
 mod status;
 mod table;

@@ -7,6 +7,7 @@ use saoms_api::host::{format_duration, one_line};
 use serde_json::{Map, Value};
 
 use super::fleet::{RunningFleetArguments, escape};
+use super::over_network::UrlArguments;
 use crate::Exit;
 use crate::arguments::duration;
 
@@ -38,6 +39,9 @@ pub(crate) struct SendArguments {
 
     #[command(flatten)]
     fleet: RunningFleetArguments,
+
+    #[command(flatten)]
+    network: UrlArguments,
 }
 
 const START_CODES: &str = "\
@@ -143,17 +147,31 @@ pub(crate) fn down(arguments: &DownArguments) -> Exit {
 }
 
 pub(crate) fn send(arguments: &SendArguments) -> Exit {
-    let answer = match arguments.fleet.ask("POST", "/v1/events", &arguments.line.join(" ")) {
+    let line = arguments.line.join(" ");
+    if let Some(programs) = arguments.network.open(&arguments.fleet) {
+        let given = programs.and_then(|mut programs| {
+            let accepted = programs.give(("POST", "/v1/events", &line))?;
+            programs.print(&[accepted], accepted_events);
+            Ok(Exit::Done)
+        });
+        return given.unwrap_or_else(|exit| exit);
+    }
+    let answer = match arguments.fleet.ask("POST", "/v1/events", &line) {
         Ok(answer) => answer,
         Err(exit) => return exit,
     };
-    arguments.fleet.show(&answer, || match (answer["events"].as_u64(), &answer["reply"]) {
+    arguments.fleet.show(&answer, || accepted_events(&answer));
+    Exit::Done
+}
+
+/// What an answer says for people.
+fn accepted_events(answer: &Value) -> String {
+    match (answer["events"].as_u64(), &answer["reply"]) {
         (Some(1), _) => "1 event accepted\n".to_owned(),
         (Some(count), _) => format!("{count} events accepted\n"),
         (None, Value::Null) => "done\n".to_owned(),
         (None, reply) => format!("{reply}\n"),
-    });
-    Exit::Done
+    }
 }
 
 pub(crate) fn start(arguments: &StartArguments) -> Exit {

@@ -5,13 +5,14 @@ use saoms_api::host::one_line;
 use serde_json::{Map, Value};
 
 use super::fleet::RunningFleetArguments;
+use super::over_network::{Programs, UrlArguments};
 use super::table::Table;
 use crate::Exit;
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0  shown
-  1  it could not be written
+  1  it could not be written, or a program on the network of `--url` does not answer
   2  no fleet runs, it is not clear which one is meant, or it has no such component";
 
 /// Show what each component of a running fleet does
@@ -24,9 +25,15 @@ pub(crate) struct StatusArguments {
 
     #[command(flatten)]
     fleet: RunningFleetArguments,
+
+    #[command(flatten)]
+    network: UrlArguments,
 }
 
 pub(crate) fn status(arguments: &StatusArguments) -> Exit {
+    if let Some(programs) = arguments.network.open(&arguments.fleet) {
+        return programs.and_then(|mut programs| over_network(arguments, &mut programs)).unwrap_or_else(|exit| exit);
+    }
     let mut answer = match arguments.fleet.ask("GET", "/v1/status", "") {
         Ok(answer) => answer,
         Err(exit) => return exit,
@@ -36,6 +43,29 @@ pub(crate) fn status(arguments: &StatusArguments) -> Exit {
     }
     arguments.fleet.show(&answer, || shown(&answer));
     Exit::Done
+}
+
+/// The same for all programs of a network.
+fn over_network(arguments: &StatusArguments, programs: &mut Programs<'_>) -> Result<Exit, Exit> {
+    let asked = &arguments.components;
+    // Each component is in one of them.
+    let keep = |answer: &mut Value| {
+        let Some(components) = answer["status"]["components"].as_array_mut() else { return asked.is_empty() };
+        components
+            .retain(|one| asked.is_empty() || asked.iter().any(|name| one["name"] == **name || one["id"] == **name));
+        asked.is_empty() || !components.is_empty()
+    };
+    let (answers, silent) = programs.answers(("GET", "/v1/status", ""), keep)?;
+    let has = |name: &String| {
+        let components = answers.iter().filter_map(|(_, answer)| answer["status"]["components"].as_array()).flatten();
+        components.into_iter().any(|one| one["name"] == **name || one["id"] == **name)
+    };
+    if let Some(unknown) = asked.iter().find(|name| !has(name)) {
+        let message = format!("no program that answers has a component `{}`", one_line(unknown));
+        return Err(arguments.fleet.refuse(&message, Exit::WrongInput));
+    }
+    programs.print(&answers, shown);
+    Ok(if silent { Exit::Failed } else { Exit::Done })
 }
 
 /// Keeps the components that are asked for.

@@ -50,7 +50,8 @@ use events::{Events, Numbers, Unreadable};
 use faults::{FaultScript, Known, report_wrong};
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
-use networks::{Networks, Refused};
+pub(super) use networks::read_private;
+use networks::{Door, Networks, Refused};
 use notify::Notifier;
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
@@ -321,6 +322,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(control.iter().flat_map(Control::observers));
     signals.starts(assembly.run.hangup);
     let (mut server, mut clients) = (None, Vec::new());
+    let door: Arc<Door> = Arc::default();
     let before = |handle: &Handle| {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
         signals.reaches(handle);
@@ -330,8 +332,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         // A run that has not begun does not end, and only one in virtual time has a speed.
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
-        clients = networks.join(handle, &signals)?;
+        clients = networks.join(handle, &signals, &door)?;
         server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts));
+        door.open(server.as_ref());
         Ok(())
     };
     let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {

@@ -1,5 +1,6 @@
 //! The networks of a run: where the composites have a `url` or a message broker.
 
+mod hooks;
 mod private;
 mod settings;
 
@@ -15,14 +16,17 @@ use saoms_core::network::exchange::Settings;
 use saoms_core::network::rights::Granted;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession};
 use saoms_core::network::{Client, Membership, Port};
-use saoms_core::schedule::{Handle, Order, StartError};
+use saoms_core::schedule::{Handle, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Diagnostic;
 use saoms_lang::model::Hangup;
 
-use super::ending::{OperatorEnd, Signalled};
+use super::ending::Signalled;
 use super::{RunArguments, title};
 use crate::output::eprint;
+pub(super) use hooks::Door;
+use hooks::Hooks;
+pub(in crate::command) use private::read as read_private;
 use settings::Resolver;
 
 /// Reasons for which a network is waited for that are told, at most.
@@ -32,8 +36,6 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// Time without a sign of life after which a program is missed: three of its longest periods, between these.
 const LEAST_PATIENCE: Duration = Duration::from_secs(1);
 const LONGEST_PATIENCE: Duration = Duration::from_secs(10);
-/// Who orders the emergency stop when a link is lost.
-const LOST_LINK: &str = "lost-link";
 /// Bytes of events that are kept for programs that have not received them, at most.
 const LIMIT: usize = 256 << 20;
 
@@ -139,7 +141,12 @@ impl Networks {
 
     /// Joins the networks, in the code that gets the control before components initialize. Waits for networks that are
     /// not there yet, until the end is asked for.
-    pub(super) fn join(self, handle: &Handle, signals: &Signalled) -> Result<Vec<Client>, StartError> {
+    pub(super) fn join(
+        self,
+        handle: &Handle,
+        signals: &Signalled,
+        door: &Arc<Door>,
+    ) -> Result<Vec<Client>, StartError> {
         for note in self.notes {
             handle.note(Level::Warning, note);
         }
@@ -149,8 +156,13 @@ impl Networks {
             let wait = Wait { longest: self.wait, limit: self.limit, is_over: &|| signals.has_come() };
             let who = Who { components: &components, router: router.as_deref(), settings: &settings };
             let Some(session) = who.opened(transport, &port, handle, &wait)? else { break };
-            let (own, lost_link, ending) = (handle.clone(), self.lost_link, signals.ending());
-            let fleet = handle.use_network(&settings.url, &port, move || lose_link(&own, lost_link, &ending));
+            let hooks = Hooks {
+                fleet: handle.clone(),
+                lost_link: self.lost_link,
+                ending: signals.ending(),
+                door: Arc::clone(door),
+            };
+            let fleet = handle.use_network(&settings.url, &port, hooks);
             let member = Settings {
                 program: RandomState::new().hash_one(std::process::id()),
                 name: self.name.clone(),
@@ -163,24 +175,6 @@ impl Networks {
             clients.push(client.map_err(|error| who.error(&error))?);
         }
         Ok(clients)
-    }
-}
-
-/// Does what the composite chose for a lost link.
-fn lose_link(fleet: &Handle, effect: Hangup, ending: &OperatorEnd) {
-    match effect {
-        Hangup::GoOn => {}
-        Hangup::Hold => {
-            fleet.note(Level::Warning, "all that moves is stopped until `saoms release`".to_owned());
-            let stop = Order::EmergencyStop { components: Vec::new(), by: Some(LOST_LINK.to_owned()) };
-            if let Err(error) = fleet.order(stop, None) {
-                fleet.note(Level::Warning, format!("nothing is stopped: {error}"));
-            }
-        }
-        Hangup::End => {
-            fleet.note(Level::Warning, "the run ends".to_owned());
-            ending.interrupt(fleet);
-        }
     }
 }
 

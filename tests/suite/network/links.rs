@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::programs::{Program, Programs, on_network};
 
 /// Starts a robot on the network, with this effect of a lost link.
-fn robot(programs: &Programs, name: &str, effect: &str) -> Arc<Program> {
+pub(super) fn robot(programs: &Programs, name: &str, effect: &str) -> Arc<Program> {
     let url = programs.url(programs.port);
     let number = name.trim_start_matches("Robot");
     let robot = on_network(&url, &[], &[(name, "saoms.Robot", &[("number", number)])]);

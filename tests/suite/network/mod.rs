@@ -11,6 +11,7 @@ mod leases;
 mod lines;
 mod links;
 mod nodes;
+mod operators;
 mod passwords;
 mod programs;
 mod proxy;

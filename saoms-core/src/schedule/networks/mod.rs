@@ -20,6 +20,7 @@ use super::inject::{OUTSIDE, OUTSIDE_NAME};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::hash::text_hash;
+use crate::network::control::{ControlRequest, Reply};
 use crate::network::exchange::wire::{Request, Vote};
 use crate::network::{Fleet, FromNetwork, FromRun, Port};
 use crate::observe::{Notification, SentMessage};
@@ -138,22 +139,31 @@ impl Handle {
     /// Puts the components whose `url` is this text on a network, in the code that gets the control
     /// [before they initialize](super::RunningFleet::start_with).
     ///
-    /// `lose` is called by the thread of the network whenever no other program of the network is heard any more.
-    pub fn use_network(&self, url: &str, port: &Arc<Port>, lose: impl Fn() + Send + 'static) -> NetworkedFleet {
+    /// `hooks` are called by the thread of the network.
+    pub fn use_network(&self, url: &str, port: &Arc<Port>, hooks: impl NetworkHooks) -> NetworkedFleet {
         let mut engine = self.shared.lock();
         let network = engine.networks.all.len();
         engine.networks.all.push((url.to_owned(), Arc::clone(port)));
         engine.networks.are_done.push(false);
         self.shared.release(engine);
-        NetworkedFleet { shared: Arc::clone(&self.shared), network, lose: Box::new(lose) }
+        NetworkedFleet { shared: Arc::clone(&self.shared), network, hooks: Box::new(hooks) }
     }
+}
+
+/// What a program does for a network beside its fleet. Nothing of it may wait.
+pub trait NetworkHooks: Send + 'static {
+    /// No other program of the network is heard any more.
+    fn lose(&self);
+
+    /// An operator asks something over the network.
+    fn control(&self, request: ControlRequest, reply: Reply);
 }
 
 /// A running fleet as one of its networks sees it.
 pub struct NetworkedFleet {
     shared: Arc<Shared>,
     network: usize,
-    lose: Box<dyn Fn() + Send>,
+    hooks: Box<dyn NetworkHooks>,
 }
 
 impl Fleet for NetworkedFleet {
@@ -257,6 +267,10 @@ impl Fleet for NetworkedFleet {
     }
 
     fn lose(&self) {
-        (self.lose)();
+        self.hooks.lose();
+    }
+
+    fn control(&self, request: ControlRequest, reply: Reply) {
+        self.hooks.control(request, reply);
     }
 }

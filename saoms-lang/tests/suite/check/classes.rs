@@ -262,7 +262,7 @@ submit! {
             let access = given.access.iter().filter_map(|text| text.split_once(' ')).map(|(user, topic)| Access {
                 user: user.to_owned(),
                 reads: Topics::Some(vec![topic.to_owned()]),
-                writes: Topics::default(),
+                ..Access::default()
             });
             Ok(Router {
                 url: format!("{transport}{}:{}", given.address, given.port),

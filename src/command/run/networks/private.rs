@@ -28,7 +28,7 @@ pub(super) fn opened(path: &Path) -> Result<File, String> {
 }
 
 /// The text of such a file.
-pub(super) fn read(path: &Path) -> Result<String, String> {
+pub(in crate::command) fn read(path: &Path) -> Result<String, String> {
     let mut text = String::new();
     let read = opened(path)?.take(LARGEST).read_to_string(&mut text);
     read.map_err(|error| format!("`{}` cannot be read: {error}", path.display()))?;
