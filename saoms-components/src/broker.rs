@@ -30,9 +30,9 @@ pub struct MessageBrokerProperties {
     password_file: Option<String>,
     /// The path of a file with further users, which no other user can read: lines `user:password`.
     users: Option<String>,
-    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, and `controls` lets
-    /// the user ask all programs, and give them orders, with `--url`. Without any, all users
-    /// may do everything; with some, those that are not named may do nothing.
+    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, and `controls`
+    /// lets the user ask all programs, and give them orders, with `--url`. Without any, all users may do everything;
+    /// with some, those that are not named may do nothing.
     access: Vec<String>,
     /// The path of a file (PEM) with the certificates of those who vouch for programs: then only programs with such a
     /// certificate are accepted.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use saoms_api::Level;
 use saoms_api::host::{cdr, shown};
 
-use super::control::{Answer, Ask, Asked, Requests};
+use super::control::{Answer, Ask, Asked, Other, Requests};
 use super::exchange::call::Outcome;
 use super::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
 use super::fleet::{Fleet, FromNetwork, Membership};
@@ -311,7 +311,8 @@ impl<F: Fleet> Member<F> {
             FromRun::Reply { program, line, number, answer } => self.exchange.reply(program, line, number, answer),
             FromRun::Unserved { program, line, number } => self.exchange.unserved(program, line, number),
             FromRun::Answer { asker, answer } => {
-                let answer = self.requests.answer(asker, answer, self.program, &self.name);
+                let others = self.exchange.others().map(|(program, name)| Other { program, name: name.to_string() });
+                let answer = self.requests.answer(asker, answer, (self.program, &self.name), others.collect());
                 answer.into_iter().for_each(|answer| self.put_answer(asker, &answer));
             }
             FromRun::Message { topic, mut component, to, is_state, schema, message } => {

@@ -55,8 +55,20 @@ pub struct Answer {
     pub status: u32,
     /// True if no other part follows.
     pub is_last: bool,
+    /// The other programs that this one knows, whether they give signs of life or not.
+    pub others: Vec<Other>,
     /// The text of this part.
     pub body: String,
+}
+
+/// A program that another one knows.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Other")]
+pub struct Other {
+    /// The program.
+    pub program: u64,
+    /// Its name for people.
+    pub name: String,
 }
 
 /// A request to the fleet of this program.
@@ -147,9 +159,15 @@ impl Requests {
     }
 
     /// Numbers a part of an answer, and keeps it; `None` if nobody waits for it any more.
-    pub(super) fn answer(&mut self, asker: u64, answer: Answer, program: u64, name: &str) -> Option<Answer> {
+    pub(super) fn answer(
+        &mut self,
+        asker: u64,
+        answer: Answer,
+        (program, name): (u64, &str),
+        others: Vec<Other>,
+    ) -> Option<Answer> {
         let open = self.open.get_mut(&(asker, answer.number))?;
-        let answer = Answer { program, name: name.to_owned(), part: open.next, ..answer };
+        let answer = Answer { program, name: name.to_owned(), part: open.next, others, ..answer };
         open.next += 1;
         if open.kept.len() >= MOST_PARTS {
             open.kept.pop_front();
@@ -190,7 +208,7 @@ mod tests {
         assert!(requests.take(ask(8, 0), PROGRAM, &port, 0).is_none(), "it is for another program");
         let Some(Asked::New(_, reply)) = requests.take(ask(0, 0), PROGRAM, &port, 0) else { panic!("it is new") };
         for (number, body) in (0..).zip(["a", "b", "c"]) {
-            let answer = requests.answer(1, part(body, body == "c"), PROGRAM, "hall").unwrap();
+            let answer = requests.answer(1, part(body, body == "c"), (PROGRAM, "hall"), Vec::new()).unwrap();
             assert_eq!((answer.part, answer.program), (number, PROGRAM));
         }
         let again = |requests: &mut Requests, to, have| match requests.take(ask(to, have), PROGRAM, &port, 1_000) {

@@ -321,6 +321,11 @@ impl Exchange {
         self.peers.values_mut().for_each(|peer| peer.heard += time);
     }
 
+    /// The other programs that are known, with their names, whether they are heard or not.
+    pub fn others(&self) -> impl Iterator<Item = (u64, &Arc<str>)> {
+        self.peers.iter().map(|(program, peer)| (*program, &peer.name))
+    }
+
     /// True if other programs are known, and none of them gives a sign of life.
     pub fn hears_nobody(&self) -> bool {
         !self.peers.is_empty() && self.peers.values().all(|peer| !peer.is_reachable)

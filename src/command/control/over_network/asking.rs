@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use saoms_api::host::{cdr, one_line};
-use saoms_core::network::control::{Answer, Ask};
+use saoms_core::network::control::{Answer, Ask, Other};
 use saoms_core::network::exchange::wire::Alive;
 use saoms_core::network::key;
 use serde_json::{Value, json};
@@ -21,6 +21,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const SETTLE: Duration = Duration::from_millis(500);
 /// Time after which who has not answered is asked again.
 pub(super) const AGAIN: Duration = Duration::from_millis(300);
+/// Time for which a program counts as known that others know alone, in milliseconds.
+const UNHEARD: u64 = 5_000;
 /// Time for which a message is waited for at once.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -58,7 +60,15 @@ impl Programs<'_> {
                 self.granted = cdr::decode(&message).ok().or(self.granted.take());
                 None
             }
-            ANSWERS => cdr::decode::<Answer>(&message).ok().filter(|answer| answer.number == ask.number),
+            ANSWERS => {
+                let answer = cdr::decode::<Answer>(&message).ok().filter(|answer| answer.number == ask.number)?;
+                // One that hangs says nothing itself.
+                for Other { program, name } in &answer.others {
+                    let known = || Known { name: name.clone(), heard: Instant::now(), patience: UNHEARD };
+                    self.known.entry(*program).or_insert_with(known);
+                }
+                Some(answer)
+            }
             _ => None,
         }
     }
@@ -106,7 +116,10 @@ impl Programs<'_> {
             let is_complete = match only {
                 Some(program) => is_whole(&program),
                 None => {
-                    let mut meant = self.known.iter().filter(|(_, known)| self.is_meant(&known.name));
+                    // One that was killed may be there again under its name.
+                    let named = |name: &str| answers.values().any(|(answer, _)| answer.is_whole && answer.name == name);
+                    let mut meant =
+                        self.known.iter().filter(|(_, known)| self.is_meant(&known.name) && !named(&known.name));
                     !answers.is_empty()
                         && answers.keys().all(is_whole)
                         && meant.all(|(program, _)| is_whole(program))
@@ -123,10 +136,11 @@ impl Programs<'_> {
             }
         }
         answers.retain(|_, (answer, _)| answer.is_whole);
-        let silent = match only {
+        let mut silent = match only {
             Some(_) => Vec::new(),
             None => self.silent(|program| answers.contains_key(program)),
         };
+        silent.retain(|name| answers.values().all(|(answer, _)| answer.name != *name));
         let answers = answers.into_iter();
         let answered: Vec<Answered> = answers.map(|(id, (answer, text))| answered(id, &answer, &text)).collect();
         if answered.is_empty() {

@@ -32,8 +32,8 @@ struct Told {
 }
 
 impl Programs<'_> {
-    /// Follows the messages of a topic, until `each` says that it is enough, or all programs have ended. What components
-    /// send reaches several programs: one of them tells of each component.
+    /// Follows the messages of a topic, until `each` says that it is enough, or all programs have ended. What
+    /// components send reaches several programs: one of them tells of each component.
     ///
     /// # Errors
     /// No program has the topic, or none answers, which was reported.
