@@ -109,6 +109,8 @@ impl Port {
                 // Heartbeats are lost as on a network, and calls are made again.
                 FromRun::Beat { .. } | FromRun::Reply { .. } | FromRun::Unserved { .. } => {}
                 FromRun::Message { .. } | FromRun::Reads { .. } => waiting.lost += 1,
+                // Who asks gives up, and can ask again.
+                FromRun::Answer { .. } => {}
             }
         }
         self.wake(waiting);
