@@ -159,7 +159,7 @@ fn a_program_of_another_version_is_told_once_and_not_heard() {
     }
     programs.until(&reader, "speaks version 2 of its language, and this one version 1");
     programs.until(&reader, "build both from one version");
-    let senders = senders(&programs, programs.port, &[("count", "10")]);
+    let senders = senders(&programs, programs.port, &[("count", "10"), ("each", "1")]);
     for sender in ["Sender1", "Sender2"] {
         programs.until(&reader, &format!("has received 1 to 10 of {sender}"));
     }
