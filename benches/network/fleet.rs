@@ -6,10 +6,11 @@ use std::sync::Arc;
 use std::thread::sleep;
 use std::time::Duration;
 
+use saoms_core::network::control::{ControlRequest, Reply};
 use saoms_core::network::exchange;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportSession};
 use saoms_core::network::{Client, Membership, Port};
-use saoms_core::schedule::{RunningFleet, Settings, StartError};
+use saoms_core::schedule::{NetworkHooks, RunningFleet, Settings, StartError};
 
 use super::common::composite::{Composite, Task};
 use super::common::deploy;
@@ -20,7 +21,16 @@ const PATIENCE: u64 = 1_000_000_000;
 /// Bytes of events that are kept: as in the command.
 const LIMIT: usize = 256 << 20;
 
-/// Runs one of the three programs.
+/// A program that nobody asks.
+struct Alone;
+
+impl NetworkHooks for Alone {
+    fn lose(&self) {}
+
+    fn control(&self, _request: ControlRequest, _reply: Reply) {}
+}
+
+/// Runs one of the programs.
 pub(super) fn run(program: &Program) -> Outcome<()> {
     let url = format!("127.0.0.1:{}", program.port);
     let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/release/libsaoms_zenoh.so");
@@ -55,7 +65,7 @@ pub(super) fn run(program: &Program) -> Outcome<()> {
     let text = composite(program, &name, &url);
     let mut client = None;
     let fleet = RunningFleet::start_with(deploy::checked(text)?.assembly, settings, Vec::new(), |handle| {
-        let fleet = handle.use_network(&url, &port, || {});
+        let fleet = handle.use_network(&url, &port, Alone);
         let member = exchange::Settings {
             program: u64::from(std::process::id()),
             name: name.clone(),
