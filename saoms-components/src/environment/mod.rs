@@ -174,11 +174,9 @@ impl Component for Environment {
             return waits.then(|| "a `saoms.World`, which defines the area".to_owned());
         };
         let (first, job) = self.open.first_key_value().filter(|_| player.is_over())?;
-        let pieces = match job.is_visit {
-            true => format!("visit {}", first - FIRST_VISIT),
-            false => pieces(*first, self.open.len() - 1),
-        };
+        let pieces = pieces(*first, self.open.len() - 1);
         Some(match job.passed_on {
+            true if job.is_visit => format!("a robot to do {pieces}"),
             true => format!("a robot to carry {pieces}"),
             false => format!("a master of the environment to pass on {pieces} on `{}`", EVENT_LUGGAGE.name()),
         })

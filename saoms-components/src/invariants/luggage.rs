@@ -8,7 +8,7 @@ use saoms_api::host::SharedMessage;
 use super::tide::Tide;
 use super::{FINISHED, Finder, ONCE, TAKEN_OVER, bound};
 use crate::messages::{
-    Assignment, CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, is_visit,
+    Assignment, CriticalKind, CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, is_visit, job_name,
 };
 
 /// The pieces of luggage of a site, and the visits, which robots do once, too.
@@ -52,13 +52,14 @@ impl Pieces {
             LuggageStage::Taken => _ = self.stranded.remove(&luggage),
             LuggageStage::Delivered => {
                 self.stranded.remove(&luggage);
+                let (what, does, done) = match is_visit(luggage) {
+                    true => (job_name(luggage), "does", "done"),
+                    false => (job_name(luggage), "delivers", "delivered"),
+                };
                 match self.all.get_mut(&luggage) {
-                    None => {
-                        finder.note(ONCE, format!("robot {robot} delivers luggage {luggage}, which nobody asked for"))
-                    }
+                    None => finder.note(ONCE, format!("robot {robot} {does} {what}, which nobody asked for")),
                     Some(Piece { delivered: Some(before), .. }) => {
-                        let text = format!("robot {robot} delivers luggage {luggage}, which was delivered at {before}");
-                        finder.note(ONCE, text);
+                        finder.note(ONCE, format!("robot {robot} {does} {what}, which was {done} at {before}"));
                     }
                     Some(piece) => piece.delivered = Some(finder.at),
                 }
@@ -138,7 +139,8 @@ impl Pieces {
         };
         let open: Vec<u32> = self.all.iter().filter(|(_, piece)| is_open(piece)).map(|(luggage, _)| *luggage).collect();
         for luggage in open {
-            finder.note(FINISHED, format!("luggage {luggage} is not delivered, and nobody gave it up"));
+            let (what, done) = (job_name(luggage), if is_visit(luggage) { "done" } else { "delivered" });
+            finder.note(FINISHED, format!("{what} is not {done}, and nobody gave it up"));
         }
     }
 }

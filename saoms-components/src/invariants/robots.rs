@@ -12,6 +12,7 @@ use crate::grid::{Block, Map};
 use crate::hardware::Area;
 use crate::messages::{
     Collision, CriticalSituation, CriticalStage, EventLuggage, Fault, FaultKind, LuggageStage, Position, RobotList,
+    job_name,
 };
 
 /// The robots of a site.
@@ -180,8 +181,8 @@ impl Robots {
                 robot.stands_still = true;
                 let block = robot.block.map(|block| format!(" at {block}")).unwrap_or_default();
                 let time = time.as_secs();
-                finder
-                    .note(NO_DEADLOCK, format!("robot {number} has stood{block} for {time} s with luggage {luggage}"));
+                let what = job_name(luggage);
+                finder.note(NO_DEADLOCK, format!("robot {number} has stood{block} for {time} s with {what}"));
             }
         }
     }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use saoms_api::{Field, Message, Time, Topic};
 
+use super::job_name;
 use crate::grid::{Block, Map};
 use crate::validation::{MessageValidator, Problem, Validate, of_robot};
 
@@ -125,7 +126,7 @@ impl Validate for EventLuggage {
     const WHAT: &'static str = "a message";
 
     fn about(&self) -> String {
-        format!("luggage {} from {} to {}", self.luggage, self.from, self.to)
+        format!("{} from {} to {}", job_name(self.luggage), self.from, self.to)
     }
 
     fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use saoms_api::{Message, Topic};
 
+use super::job_name;
 use crate::grid::{Block, Map};
 use crate::validation::{MessageValidator, Problem, Validate};
 
@@ -13,7 +14,7 @@ use crate::validation::{MessageValidator, Problem, Validate};
 pub const ASSIGNMENT: Topic<Assignment> = Topic::event("JOBTOPIC").optional();
 
 /// A job for one robot. The robot answers on ELMSTOPIC: it takes the luggage, refuses it for good, or releases it for
-/// the others.
+/// the others. To a robot that took a visit by itself, it says that the master agrees, and has no answer.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(place = "charger")]
 pub struct Assignment {
@@ -38,7 +39,7 @@ impl Validate for Assignment {
     const WHAT: &'static str = "an assignment";
 
     fn about(&self) -> String {
-        format!("luggage {} from {} to {}", self.luggage, self.from, self.to)
+        format!("{} from {} to {}", job_name(self.luggage), self.from, self.to)
     }
 
     fn validate(&self, _sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {

@@ -21,6 +21,14 @@ pub const fn is_visit(number: u32) -> bool {
     number >= FIRST_VISIT
 }
 
+/// A job in words, by its number: `luggage 3`, or `visit 1`.
+pub(crate) fn job_name(number: u32) -> String {
+    match number.checked_sub(FIRST_VISIT) {
+        Some(visit) => format!("visit {visit}"),
+        None => format!("luggage {number}"),
+    }
+}
+
 /// Blocks that a robot visits.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct Visit {

@@ -4,6 +4,8 @@ mod curves;
 
 use saoms_api::extension::{Counts, RunSummary, submit};
 
+use crate::messages::{is_visit, job_name};
+
 submit! {
     RunSummary {
         counts: &[
@@ -63,11 +65,12 @@ pub(crate) fn counted(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// `luggage 3`, `luggage 3 and 2 more pieces`: the first of several pieces, and how many others there are.
+/// `luggage 3`, `luggage 3 and 2 more pieces`, `visit 1`: the first of several pieces, and how many others there are.
 pub(crate) fn pieces(first: u32, more: usize) -> String {
+    let (first, other) = (job_name(first), if is_visit(first) { "visit" } else { "piece" });
     match more {
-        0 => format!("luggage {first}"),
-        more => format!("luggage {first} and {more} more piece{}", if more == 1 { "" } else { "s" }),
+        0 => first,
+        more => format!("{first} and {more} more {other}{}", if more == 1 { "" } else { "s" }),
     }
 }
 

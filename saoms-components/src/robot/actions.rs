@@ -229,6 +229,7 @@ impl RobotKnowledge {
         variables.healer = false;
         (self.job, self.lease) = (None, None);
         self.stops.clear();
+        self.awaits_master = 0;
         if self.is_assigned {
             self.lingers = LINGERING;
         }

@@ -150,6 +150,9 @@ pub struct RobotKnowledge {
     pub untold: Option<JobEnd>,
     /// True if a master assigned the job.
     pub(super) is_assigned: bool,
+    /// Number of executions for which it waits at the last block of a visit that it took by itself, until a master
+    /// agrees that no other robot does it.
+    pub(super) awaits_master: u32,
     /// Number of the component of the master that assigned it.
     pub(super) assigned_by: u32,
     /// Number of executions for which it waits for the next assignment before it goes home.
@@ -228,6 +231,7 @@ impl RobotKnowledge {
             failures: 0,
             untold: None,
             is_assigned: false,
+            awaits_master: 0,
             assigned_by: 0,
             lingers: 0,
             loaded: false,

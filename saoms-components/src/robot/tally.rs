@@ -6,6 +6,7 @@ use saoms_api::{Context, ReportValue};
 
 use super::{RobotKnowledge, Trouble, Variables};
 use crate::grid::Block;
+use crate::messages::job_name;
 
 /// What a robot did so far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,8 +45,7 @@ impl RobotKnowledge {
     pub(super) fn status(&self) -> Vec<(String, ReportValue)> {
         let block = |block: Block| ReportValue::List(vec![block.x.into(), block.y.into()]);
         let job = self.job.as_ref().map_or(ReportValue::Null, |job| {
-            let (luggage, from, to) = (job.luggage, job.from, job.to);
-            format!("luggage {luggage} from {from} to {to}").into()
+            format!("{} from {} to {}", job_name(job.luggage), job.from, job.to).into()
         });
         let waits = self.yields_to;
         ReportValue::named([

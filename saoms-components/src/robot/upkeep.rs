@@ -11,6 +11,7 @@ impl RobotKnowledge {
         let now = context.now();
         self.polled = None;
         self.lingers = self.lingers.saturating_sub(1);
+        self.awaits_master = self.awaits_master.saturating_sub(1);
         self.elapsed = self.executed_at.map_or(std::time::Duration::ZERO, |last| now.since(last));
         self.executed_at = Some(now);
         self.take_measured();

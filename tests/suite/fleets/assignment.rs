@@ -306,3 +306,16 @@ fn a_master_that_hears_late_does_not_assign_luggage_again_and_again() {
         assert!((36..=72).contains(&assigned) && back <= 12, "{policy}: {assigned} and {back}: {log}");
     }
 }
+
+#[test]
+fn robots_agree_although_messages_overtake_each_other() {
+    let scenario = "from 1s every 400ms 60 times luggage random to random; at 1s for 40s reorder 20 % by 200ms";
+    let robots: Vec<(u32, u32, &str)> = (1..=4).map(|number| (0, number, "")).collect();
+    let text = fleet_text("width=11 height=11", "", ["", ""], scenario, &robots);
+    let zone = "<component name=\"Zone\"><implementation.java class=\"saoms.Zone\"/><property name=\"ID\">Zone</property>\
+        <property name=\"period\">100</property><reference name=\"world\" target=\"World\"/></component></composite>";
+    let fleet = Fleet::of_text(text.replace("</composite>", zone));
+    for seed in 1..=8 {
+        delivers(&fleet, seed, 60);
+    }
+}

@@ -146,3 +146,75 @@ fn visits_keep_the_invariants_of_luggage() {
         assert_eq!(fleet(&[("scenario", scenario)], [&[], &[]]).violations(1, LIMIT), "", "{scenario}");
     }
 }
+
+/// A site with a zone, a master with this property, eight robots, and visits while this happens.
+fn disturbed(assignment: &str, fault: &str) -> Fleet {
+    let scenario = format!("from 1s every 400ms 30 times visit (0,0)..(10,10) then (0,0)..(10,10); {fault}");
+    Fleet::of_text(disturbed_text(assignment, &scenario, 8))
+}
+
+fn disturbed_text(assignment: &str, scenario: &str, robots: u32) -> String {
+    let mut parts = vec![
+        component("World", "World", &[("width", "11"), ("height", "11")]),
+        component("Zone", "Zone", &[])
+            .replace("</component>", r#"<reference name="world" target="World"/></component>"#),
+        component("Master", "MasterEnvironment", &[("assignment", assignment), ("restart", "onFailure")]),
+        component("Environment", "Environment", &[("scenario", scenario)]),
+    ];
+    parts.extend((1..=robots).map(|number| component(&format!("Robot{number}"), "Robot", &[("discharge", "0")])));
+    format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
+{}</composite>"#,
+        parts.concat()
+    )
+}
+
+#[test]
+fn visits_are_done_once_whatever_happens_to_messages() {
+    let storm = "at 1s for 20s lose 30 %; at 1s for 20s delay 10ms to 300ms; at 1s for 20s duplicate 10 %; \
+        at 1s for 20s reorder 20 % by 200ms";
+    let part = "at 1s for 15s part Robot1 from Robot2, Robot3, Robot4";
+    for assignment in ["robots", "oldest", "optimal"] {
+        for fault in ["at 1s for 20s delay 10ms to 300ms", part, storm] {
+            let fleet = disturbed(assignment, fault);
+            for seed in 1..=3 {
+                let violations = fleet.violations(seed, Duration::from_secs(600));
+                assert_eq!(violations, "", "{assignment}, {fault}, seed {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn visits_that_are_assigned_before_they_are_heard_are_no_luggage() {
+    let fault = "at 0s delay 400ms on VISITTOPIC from * to Robot1, Robot2, Robot3, Robot4";
+    let run = disturbed("optimal", fault).run(1, LIMIT);
+    assert_eq!(run.sections["errands"], json!({"requested": 30, "finished": 30, "open": 0}), "{}", run.log());
+    assert!(!run.log().contains("collect"), "{}", run.log());
+}
+
+#[test]
+fn a_robot_that_starts_later_takes_over_a_visit_that_it_never_heard_of() {
+    // Robot 2 starts while robot 1 is on its way, which breaks.
+    let scenario = "at 1s visit (9,9) then (2,2); at 2500ms breakdown Robot1";
+    let times = [("start", "1800ms"), ("work", "10min"), ("pause", "1s"), ("shifts", "1")];
+    let shift = component("Shift", "Shift", &times)
+        .replace("</component>", r#"<reference name="tasks" target="Robot2/TaskInterface"/></component>"#);
+    for assignment in ["robots", "optimal"] {
+        let text = disturbed_text(assignment, scenario, 2);
+        let late = r#"<property name="ID">Robot2</property>"#;
+        let text = text.replace(late, &format!(r#"{late}<property name="runOnStartup">false</property>"#));
+        let text = text.replace("</composite>", &format!("{shift}</composite>"));
+        let run = Fleet::of_text(text).run(1, LIMIT);
+        assert_eq!(run.sections["errands"], json!({"requested": 1, "finished": 1, "open": 0}), "{}", run.log());
+        assert_eq!(visited(&run, "Robot2"), ["(9,9)", "(2,2)"], "{}", run.log());
+    }
+}
+
+#[test]
+fn visits_are_called_so() {
+    let all = "at 1s visit (9,9) then (5,5); at 2s breakdown Robot1; at 2s breakdown Robot2";
+    let run = fleet(&[("scenario", all)], [&[], &[]]).run(1, LIMIT);
+    assert!(run.log().contains("gives up visit 1 from (9,9) to (5,5): no robot can do it"), "{}", run.log());
+    assert!(!run.log().contains("2147483649"), "{}", run.log());
+}

@@ -8,7 +8,8 @@ use saoms_api::host::declaration::ConstText;
 use saoms_api::{Field, Time};
 
 use crate::grid::Block;
-use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Position, RobotList};
+use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Position, RobotList, is_visit};
+use crate::robot::Policy;
 
 /// Number of periods of the slowest robot for which a robot that took no job is not asked again. It doubles each time,
 /// as often as [`DOUBLED`].
@@ -67,6 +68,8 @@ pub struct Member {
     away: bool,
     /// True if it was not heard for the time of a lease, until it is heard again.
     lapsed: bool,
+    /// True if it never answers: the rules of the manual know no masters that assign.
+    is_deaf: bool,
 }
 
 /// The robots that bring luggage, by number. As an entry it is a list of [`Member`].
@@ -121,12 +124,13 @@ impl Crew {
 
     /// Robots that are awake.
     pub(super) fn awake(&self) -> impl Iterator<Item = &Member> {
-        self.members.values().filter(|member| !member.asleep)
+        self.members.values().filter(|member| !(member.asleep || member.is_deaf))
     }
 
     /// Robots that sleep and that may be asked, by number.
     pub(super) fn asleep(&self, now: Time) -> impl Iterator<Item = &Member> {
-        let may = move |member: &&Member| member.asleep && member.asked.is_none() && member.until <= now;
+        let is_asked = |member: &&Member| member.is_deaf || member.asked.is_some();
+        let may = move |member: &&Member| member.asleep && member.until <= now && !is_asked(member);
         self.members.values().filter(may)
     }
 
@@ -149,13 +153,22 @@ impl Crew {
         self.step.unwrap_or_else(|| self.slowest())
     }
 
-    /// A crew of which only is known who brings what, after a restart of the master.
-    pub(in crate::master) fn with_jobs(jobs: impl Iterator<Item = (u32, u32)>) -> Crew {
-        let member = |(robot, luggage)| {
-            // It counts as out of earshot until it is heard.
-            (robot, Member { robot, job: Some(luggage), collected: true, away: true, ..Member::default() })
-        };
-        Crew { members: jobs.map(member).collect(), ..Crew::default() }
+    /// A crew of which only is known who brings what, and who is asked to visit what, after a restart of the master.
+    pub(in crate::master) fn with_jobs(
+        jobs: impl Iterator<Item = (u32, u32)>,
+        asked: impl Iterator<Item = (u32, u32)>,
+    ) -> Crew {
+        // They count as out of earshot until they are heard.
+        let away = |robot: u32| Member { robot, away: true, ..Member::default() };
+        let mut crew = Crew::default();
+        for (robot, luggage) in jobs {
+            crew.members.insert(robot, Member { job: Some(luggage), collected: true, ..away(robot) });
+        }
+        for (robot, visit) in asked {
+            crew.members.entry(robot).or_insert_with(|| away(robot)).asked = Some(visit);
+            crew.asked.insert(robot);
+        }
+        crew
     }
 
     /// Handles the state of a robot.
@@ -175,7 +188,7 @@ impl Crew {
         }
         (member.charger, member.battery, member.asleep, member.period) =
             (said.charger, said.battery, said.asleep, said.period);
-        (member.away, member.lapsed) = (false, false);
+        (member.away, member.lapsed, member.is_deaf) = (false, false, said.policy == Policy::Classic);
         self.slowest = self.slowest.max(said.period);
         self.sort(said.robot);
     }
@@ -367,12 +380,14 @@ impl Crew {
     }
 
     /// Robots that did not answer in time, with the luggage that was assigned to them. They are not asked again soon.
+    /// For an answer to a visit the master waits for ever: the robot may have done it.
     pub(in crate::master) fn take_silent(&mut self, now: Time) -> Vec<(u32, u32)> {
         let rest = now + self.slowest().saturating_mul(8 * REST);
         let over = self.unanswered.extract_if(.., |(_, _, until)| *until <= now);
         let mut silent: Vec<(u32, u32)> = over.map(|(robot, luggage, _)| (robot, luggage)).collect();
         for robot in self.asked.iter().copied().collect::<Vec<_>>() {
-            if let Some(member) = self.members.get_mut(&robot).filter(|member| member.until <= now)
+            let is_late = |member: &&mut Member| member.until <= now && !member.asked.is_some_and(is_visit);
+            if let Some(member) = self.members.get_mut(&robot).filter(is_late)
                 && let Some(luggage) = member.asked.take()
             {
                 (member.until, member.late, member.late_at) = (rest, Some(luggage), member.asked_at);
@@ -393,7 +408,8 @@ impl Crew {
         let (is_free, is_asked) = self.members.get(&robot).map_or((false, false), |member| {
             let has_job = member.job.is_some() || member.asked.is_some();
             let works = has_job || member.engaged || member.elsewhere.is_some();
-            (!(member.asleep || works || member.away || member.lapsed), member.asked.is_some())
+            let is_out = member.away || member.lapsed || member.is_deaf;
+            (!(member.asleep || works || is_out), member.asked.is_some())
         });
         let note = |set: &mut BTreeSet<u32>, is_in: bool| {
             if is_in {

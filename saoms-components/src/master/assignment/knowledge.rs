@@ -13,7 +13,9 @@ use crate::grid::Block;
 use crate::master::event_filter::EventFilter;
 use crate::master::open_luggage::{Lapsed, OpenLuggage, WaitingPiece};
 use crate::master::part::{Early, Part};
-use crate::messages::{Assignment, CriticalSituation, EventLuggage, Fault, Lease, LuggageStage, Position, RobotList};
+use crate::messages::{
+    Assignment, CriticalSituation, EventLuggage, Fault, Lease, LuggageStage, Position, RobotList, is_visit,
+};
 use crate::robot::{HEARD, Job};
 use crate::validation::{MessageValidator, Validate};
 
@@ -34,6 +36,8 @@ pub struct MasterEnvironmentKnowledge {
     /// What a loop assigns to robots in this execution.
     #[entry(effector, quiet)]
     pub assignments: Vec<Assignment>,
+    /// What is to be said to robots that took visits by themselves.
+    pub(in crate::master) agreed: Vec<Assignment>,
     /// Who decides which robot brings which luggage.
     pub(in crate::master) policy: AssignmentPolicy,
     /// Checks what others publish.
@@ -53,6 +57,7 @@ impl MasterEnvironmentKnowledge {
             open: OpenLuggage::default(),
             crew: Crew::default(),
             assignments: Vec::new(),
+            agreed: Vec::new(),
             validator: MessageValidator::default(),
             filter: EventFilter::default(),
             part: None,
@@ -112,10 +117,13 @@ impl MasterEnvironmentKnowledge {
             }
             LuggageStage::Release => self.open.discuss(said.luggage, now),
             LuggageStage::Taken => {
-                let bearer = self.open.bearer(said.luggage).filter(|bearer| *bearer != said.robot);
+                let bearer = self.open.bearer(said.luggage);
                 self.crew.hear_response(said, now);
-                if let Some(bearer) = bearer {
+                if let Some(bearer) = bearer.filter(|bearer| *bearer != said.robot) {
                     return self.withdraw_from_one(said, bearer);
+                }
+                if is_visit(said.luggage) && bearer.is_none() {
+                    self.agree(said);
                 }
                 return self.open.hear_response(said);
             }
@@ -128,14 +136,25 @@ impl MasterEnvironmentKnowledge {
     /// Two robots want to bring the same luggage: the one that took it later, or that has not taken it yet, or may not
     /// collect it yet, gives it back.
     fn withdraw_from_one(&mut self, said: &EventLuggage, bearer: u32) {
-        let has_taken = self.crew.get(bearer).is_some_and(|member| member.job == Some(said.luggage))
-            && !self.open.may_leave(said.luggage, bearer);
+        // Who is asked to do a visit may have done it.
+        let has_taken = is_visit(said.luggage)
+            || self.crew.get(bearer).is_some_and(|member| member.job == Some(said.luggage))
+                && !self.open.may_leave(said.luggage, bearer);
         let other = if has_taken { said.robot } else { bearer };
         if !has_taken {
             self.open.hear_response(said);
         }
         self.open.contend(said.luggage, other);
         self.assign(other, said.luggage, (said.from, said.to), true);
+    }
+
+    /// A robot took a visit by itself, and does not end it before it knows that no other robot does it. One that comes
+    /// too late hands it back.
+    fn agree(&mut self, said: &EventLuggage) {
+        let EventLuggage { robot, luggage, from, to, block, .. } = *said;
+        let charger = self.crew.get(robot).map_or(block, |member| member.charger);
+        let withdrawn = self.open.job(luggage).is_none();
+        self.agreed.push(Assignment { robot, luggage, withdrawn, from, to, charger, lease: 0 });
     }
 
     /// True if robots decide by themselves at present who takes the luggage.

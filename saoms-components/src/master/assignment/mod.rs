@@ -1,8 +1,8 @@
 //! Assignment of luggage to robots by the master of the environment.
 //!
 //! A loop matches the luggage that waits with the robots that are free, and sends each of them its job. A robot takes
-//! it, refuses it for good, or hands it back. So no luggage has two robots: it is assigned to one, and to another one
-//! only once that has answered.
+//! it, refuses it for good, or hands it back. A visit is assigned to another robot only once the first one has
+//! answered, luggage also when that takes too long: the world lets one robot collect it.
 
 mod crew;
 mod knowledge;

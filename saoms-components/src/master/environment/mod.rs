@@ -19,6 +19,7 @@ use crate::messages::{
     AREA, ASSIGNMENT, Assignment, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT,
     EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT, FIRST_VISIT, Fault, FaultKind, LEASE, Lease, LuggageStage,
     POSITION, Position, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, TERRITORY, VISIT, Visit, is_visit,
+    job_name,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
@@ -189,7 +190,7 @@ impl Component for MasterEnvironment {
         let mut started = Vec::new();
         for (header, robot) in context.receive(&self.robots).with_headers() {
             if self.knowledge.accepts(robot, header, context) && self.knowledge.hear_robot(robot, header) {
-                started.push((header.cause, robot.robot));
+                started.push((header.cause, robot.robot, robot.began));
             }
         }
         for (header, early) in self.knowledge.part.as_mut().map_or_else(Vec::new, |part| part.learn(context)) {
@@ -237,17 +238,18 @@ impl Component for MasterEnvironment {
             info!(context, "visit {visit} waits again: its robot left it");
             self.request(request, context)?;
         }
-        for (cause, robot) in started {
+        for (cause, robot, began) in started {
             context.because(cause);
+            for visit in self.knowledge.open.taken_before(robot, began) {
+                context.send(&self.visits, visit)?;
+            }
             self.repeat_for(robot, context)?;
         }
         context.because(Cause::default());
         for (luggage, from, to) in self.knowledge.take_hopeless(context.now()) {
-            context.alert(
-                GIVEN_UP,
-                luggage,
-                format_args!("gives up luggage {luggage} from {from} to {to}: no robot can carry it"),
-            );
+            let (what, does) = (job_name(luggage), if is_visit(luggage) { "do" } else { "carry" });
+            let line = format_args!("gives up {what} from {from} to {to}: no robot can {does} it");
+            context.alert(GIVEN_UP, luggage, line);
             context.vote(Work::GivenUp);
             context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
         }
@@ -274,7 +276,7 @@ impl Component for MasterEnvironment {
         self.knowledge.validator.restore(memory.speakers);
         self.knowledge.filter = EventFilter::of(memory.known);
         self.knowledge.open = OpenLuggage::of(memory.open);
-        self.knowledge.crew = Crew::with_jobs(self.knowledge.open.jobs());
+        self.knowledge.crew = Crew::with_jobs(self.knowledge.open.jobs(), self.knowledge.open.asked());
         self.requests = memory.requests.into_iter().map(|request| (Cause::default(), request)).collect();
         self.loops.restore(&mut self.knowledge, &memory.loops)
     }
@@ -289,6 +291,7 @@ impl Component for MasterEnvironment {
         }
         Some(match self.knowledge.open.first() {
             None => "events".to_owned(),
+            Some((first, more)) if is_visit(first) => format!("a robot to do {}", pieces(first, more)),
             Some((first, more)) => format!("a robot to carry {}", pieces(first, more)),
         })
     }
@@ -383,6 +386,9 @@ impl MasterEnvironment {
         }
         self.loops.monitor(&mut self.knowledge, context)?;
         self.loops.adapt(&mut self.knowledge, context)?;
+        for agreed in std::mem::take(&mut self.knowledge.agreed) {
+            context.send(&self.assignments, agreed)?;
+        }
         for assignment in std::mem::take(&mut self.knowledge.assignments) {
             self.knowledge.note_assigned(&assignment, now);
             context.send(&self.assignments, assignment)?;

@@ -8,7 +8,7 @@ use super::outages::Failed;
 use super::{OpenLuggage, Piece};
 use crate::gone::Gone;
 use crate::grid::Block;
-use crate::messages::{CriticalSituation, Removal};
+use crate::messages::{CriticalSituation, Removal, is_visit};
 
 /// Open luggage, for a master that goes on.
 #[derive(Clone, Debug, Field)]
@@ -34,6 +34,7 @@ struct PieceMemory {
     refused: Vec<u32>,
     waits: bool,
     taken: Option<u32>,
+    asked: Option<u32>,
     left_by: Option<u32>,
     stops: Vec<Block>,
     only: Option<u32>,
@@ -58,7 +59,7 @@ impl OpenLuggage {
     /// The state for a master that goes on.
     pub(in crate::master) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused, waits, taken, left_by, stops, only, since, unheard, .. } = piece;
+            let Piece { from, to, refused, waits, taken, left_by, stops, only, since, unheard, asked, .. } = piece;
             let (refused, stops) = (refused.iter().copied().collect(), stops.clone());
             PieceMemory {
                 luggage: *luggage,
@@ -67,6 +68,8 @@ impl OpenLuggage {
                 refused,
                 waits: *waits,
                 taken: *taken,
+                // Who is asked to bring luggage is asked again, or the world refuses the second one.
+                asked: asked.filter(|_| is_visit(*luggage)),
                 left_by: *left_by,
                 stops,
                 only: *only,
@@ -99,10 +102,11 @@ impl OpenLuggage {
     /// The state of a master that goes on.
     pub(in crate::master) fn of(memory: OpenMemory) -> OpenLuggage {
         let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, waits, taken, left_by, stops, only, since, unheard, .. } = piece;
+            let PieceMemory { luggage, from, to, waits, taken, left_by, stops, only, since, unheard, asked, .. } =
+                piece;
             let refused = piece.refused.into_iter().collect();
             let contenders = piece.contenders.into_iter().collect();
-            let (asked, discussed) = (None, since);
+            let discussed = since;
             let piece = Piece {
                 from,
                 to,
@@ -122,7 +126,11 @@ impl OpenLuggage {
             };
             (luggage, piece)
         };
-        let waiting = memory.pieces.iter().filter(|piece| piece.waits).map(|piece| (piece.since, piece.luggage));
+        let waiting = memory
+            .pieces
+            .iter()
+            .filter(|piece| piece.waits && piece.asked.is_none())
+            .map(|piece| (piece.since, piece.luggage));
         let waiting = waiting.collect();
         let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
         OpenLuggage {

@@ -12,7 +12,7 @@ use saoms_api::{Field, Header, ReportValue, Time};
 use crate::gone::Gone;
 use crate::grid::Block;
 use crate::messages::{
-    CriticalSituation, CriticalStage, EventLuggage, FaultKind, LuggageStage, Removal, RobotList, Visit,
+    CriticalSituation, CriticalStage, EventLuggage, FIRST_VISIT, FaultKind, LuggageStage, Removal, RobotList, Visit,
 };
 use crate::robot::Job;
 
@@ -273,6 +273,19 @@ impl OpenLuggage {
     /// The robots that bring luggage, with its number.
     pub(super) fn jobs(&self) -> impl Iterator<Item = (u32, u32)> {
         self.pieces.iter().filter_map(|(luggage, piece)| Some((piece.taken?, *luggage)))
+    }
+
+    /// Visits that other robots do since before this one began. It did not hear their blocks, and may have to take
+    /// over.
+    pub(super) fn taken_before(&self, robot: u32, began: Option<Time>) -> Vec<Visit> {
+        let is_earlier = |piece: &&Piece| !piece.waits && began.is_some_and(|began| piece.since <= began);
+        let taken = self.pieces.range(FIRST_VISIT..).filter(|(_, piece)| is_earlier(piece) && piece.is_for(robot));
+        taken.filter_map(|(luggage, piece)| piece.visit(*luggage)).collect()
+    }
+
+    /// The robots that are asked to do visits, with the number of the visit.
+    pub(super) fn asked(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.pieces.range(FIRST_VISIT..).filter_map(|(luggage, piece)| Some((piece.asked?, *luggage)))
     }
 
     /// Handles the state of a robot; true if it was not active before.

@@ -166,3 +166,23 @@ fn interest_of_another_program_that_says_nothing_more_ends() {
     requests.forget_silent(at(12));
     assert_eq!(rivals(&requests), [2], "of its own program a robot hears all");
 }
+
+#[test]
+fn an_interest_that_arrives_after_its_end_does_not_count() {
+    let rivals = |lists: &Lists| lists.requests.open()[1].rivals.iter().map(|rival| rival.robot).collect::<Vec<_>>();
+    for end in [LuggageStage::Release, LuggageStage::Refused] {
+        let mut lists = lists();
+        lists.requests.hear(&response(2, 7, end), at(6));
+        lists.requests.hear(&response(2, 7, LuggageStage::Interest), at(5));
+        assert_eq!(rivals(&lists), [0; 0], "{end:?}");
+    }
+    let mut lists = lists();
+    lists.requests.hear(&response(2, 7, LuggageStage::Interest), at(7));
+    lists.requests.hear(&response(2, 7, LuggageStage::Release), at(6));
+    assert_eq!(rivals(&lists), [7], "it is interested again");
+    // Before the request, too.
+    lists.requests.hear(&response(4, 7, LuggageStage::Release), at(6));
+    lists.requests.hear(&request(4), at(4));
+    lists.requests.hear(&response(4, 7, LuggageStage::Interest), at(5));
+    assert_eq!(lists.requests.open().last().map(|request| request.rivals.len()), Some(0));
+}

@@ -50,6 +50,7 @@ struct Memory {
     untold: Option<JobEnd>,
     is_assigned: bool,
     assigned_by: u32,
+    awaits_master: u32,
     lingers: u32,
     loaded: bool,
     said_homeward: bool,
@@ -121,6 +122,7 @@ impl RobotKnowledge {
             untold: self.untold,
             is_assigned: self.is_assigned,
             assigned_by: self.assigned_by,
+            awaits_master: self.awaits_master,
             lingers: self.lingers,
             loaded: self.loaded,
             said_homeward: self.said_homeward,
@@ -159,6 +161,7 @@ impl RobotKnowledge {
         (self.trouble, self.failures) = (memory.trouble, memory.failures);
         (self.untold, self.lingers) = (memory.untold, memory.lingers);
         (self.is_assigned, self.assigned_by) = (memory.is_assigned, memory.assigned_by);
+        self.awaits_master = memory.awaits_master;
         (self.loaded, self.said_homeward) = (memory.loaded, memory.said_homeward);
         (self.energy, self.leg, self.lease) = (memory.energy, memory.leg, memory.lease.map(Box::new));
         self.traffic.restore(memory.traffic);

@@ -180,6 +180,10 @@ impl RobotKnowledge {
     /// The job, if the robot is at its next destination, with enough energy to work there.
     pub(super) fn job_here(&mut self) -> Option<Job> {
         let destination = self.destination()?;
+        if self.awaits_master > 0 && self.stops.len() == 1 {
+            // It makes way for others meanwhile.
+            return None;
+        }
         let stands = self.next == self.block && self.reaches(destination, self.block);
         self.job.filter(|_| stands && self.may_handle() && !self.leaves_block())
     }

@@ -3,6 +3,7 @@
 use saoms_api::{Cause, Time};
 
 use crate::hardware::ActionKind;
+use crate::messages::is_visit;
 use crate::robot::{Assigned, Job, RobotKnowledge};
 
 use super::super::energy::Feasibility;
@@ -10,8 +11,19 @@ use super::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
 
 /// The oldest assignment that this robot has to answer, and its cause.
 pub(super) fn look_at_assignment(knowledge: &mut RobotKnowledge) -> Option<(SafeLuggageSymptom, Cause)> {
+    let is_late =
+        knowledge.job.filter(|job| knowledge.awaits_master > 0 && knowledge.lists.requests.is_delivered(job.luggage));
+    if let Some(job) = is_late {
+        // Another robot was faster, and has done it.
+        return Some((SafeLuggageSymptom::Withdrawn(job), Cause::default()));
+    }
     while let Some(Assigned { job, withdrawn, master, cause }) = knowledge.lists.requests.answer_assignment() {
         let is_own = knowledge.job.is_some_and(|own| own.luggage == job.luggage);
+        let is_untold = knowledge.untold.is_some_and(|end| end.job.luggage == job.luggage);
+        if is_untold || knowledge.lists.requests.has_done(job.luggage) {
+            // The master hears how it ended.
+            continue;
+        }
         if withdrawn {
             let collects = |kind| matches!(kind, ActionKind::Collect | ActionKind::Deposit);
             let collects = knowledge.hardware.running().is_some_and(|action| collects(action.kind));
@@ -21,8 +33,13 @@ pub(super) fn look_at_assignment(knowledge: &mut RobotKnowledge) -> Option<(Safe
             }
             return Some((SafeLuggageSymptom::Withdrawn(job), cause));
         }
-        if !is_own {
-            let is_free = knowledge.is_free_for(master);
+        if is_own {
+            // The master agrees that this robot does it.
+            knowledge.awaits_master = 0;
+        } else {
+            // A late word to a visit that this robot took and left since is no call to do it.
+            let is_over = is_visit(job.luggage) && knowledge.lists.requests.has_refused(job.luggage);
+            let is_free = !is_over && knowledge.is_free_for(master);
             if is_free {
                 knowledge.assigned_by = master;
             }

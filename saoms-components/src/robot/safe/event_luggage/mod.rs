@@ -6,7 +6,7 @@ mod records;
 use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publisher, Saved, Work, info};
 
 use crate::grid::{Block, UNREACHABLE};
-use crate::messages::{EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage};
+use crate::messages::{ASSIGNMENT, EVENT_LUGGAGE, EventLuggage, FIRST_VISIT, LuggageStage, is_visit, job_name};
 use crate::robot::lists::WAY_CLOSED;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::{ASSISTANCE, Job, JobEnd, Request, RobotKnowledge};
@@ -20,6 +20,9 @@ pub(super) use records::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
 
 /// Number of moves in whose time a request gains one block of distance, so that no request waits for ever.
 const PATIENCE: u64 = 4;
+
+/// Number of executions for which a robot waits for the word of a master, which may have failed.
+const AWAITED: u32 = 300;
 
 /// Decides which luggage this robot brings.
 ///
@@ -202,6 +205,10 @@ impl Loop for SafeEventLuggage {
                 knowledge.take(job, context.now());
                 // Before it says that it takes it: a program that is stopped between the two has no job for ever.
                 knowledge.renew_lease(context)?;
+                // A world lets one robot collect luggage; of a visit only a master knows who does it.
+                let has_master = || context.publishers(&ASSIGNMENT).iter().any(|master| master.has_begun);
+                let asks = knowledge.visits && !knowledge.is_assigned && has_master();
+                knowledge.awaits_master = if asks { AWAITED } else { 0 };
                 knowledge.set_out(&job);
                 match knowledge.visits {
                     true => info!(context, "goes to {} for visit {}", job.from, job.luggage - FIRST_VISIT),
@@ -319,7 +326,8 @@ impl SafeEventLuggage {
         let level = if std::mem::replace(&mut self.warned, true) { Level::Debug } else { Level::Warning };
         let Job { luggage, from, to } = *job;
         let full = knowledge.executions_when_full();
-        let what = format_args!("cannot carry luggage {luggage} from {from} to {to}");
+        let does = if is_visit(luggage) { "do" } else { "carry" };
+        let what = format_args!("cannot {does} {} from {from} to {to}", job_name(luggage));
         match why {
             Hindrance::Others => context.log(level, format_args!("{what}: {}", why.words())),
             Hindrance::NoWay => {

@@ -1,3 +1,5 @@
+mod memory;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -7,6 +9,8 @@ use crate::grid::Block;
 use crate::messages::{Assignment, EventLuggage, Lease, LuggageStage, Visit, is_visit};
 use crate::robot::Job;
 use crate::state::Numbers;
+
+pub(in crate::robot) use memory::RequestsMemory;
 
 /// Another robot that took an interest in the same luggage, or offered the same help.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
@@ -99,6 +103,13 @@ pub struct Requests {
     delivered: Numbers,
     /// Luggage that a master assigned to this robot, or took back, which the robot has not answered yet.
     assigned: Vec<Assigned>,
+    /// When robots said last whether they are interested in luggage that is not delivered, by luggage and robot:
+    /// messages may overtake each other.
+    said: BTreeMap<(u32, u32), Time>,
+    /// When a master said last whether luggage is for this robot.
+    ordered: BTreeMap<u32, Time>,
+    /// Visits that this robot has done.
+    done: Numbers,
     /// When luggage was requested last that nobody took since. That somebody took it before may be heard later.
     requested: BTreeMap<u32, Time>,
     /// Luggage that is not settled and was announced from another program.
@@ -123,27 +134,6 @@ pub struct Assigned {
     pub cause: Cause,
 }
 
-/// The list, for a robot that goes on.
-#[derive(Clone, Debug, Field)]
-pub(in crate::robot) struct RequestsMemory {
-    open: Vec<Request>,
-    claimed: Option<Request>,
-    refused: Vec<Refused>,
-    refusals: Vec<Refusal>,
-    visits: Vec<Visit>,
-    settled: Numbers,
-    delivered: Numbers,
-    assigned: Vec<Assigned>,
-    requested: Vec<Requested>,
-    of_elsewhere: Vec<u32>,
-}
-
-#[derive(Clone, Copy, Debug, Field)]
-struct Requested {
-    luggage: u32,
-    at: Time,
-}
-
 /// Luggage that this robot refused, and where it was; none where that is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
 struct Refused {
@@ -151,38 +141,7 @@ struct Refused {
     from: Option<Block>,
 }
 
-#[derive(Clone, Copy, Debug, Field)]
-struct Refusal {
-    luggage: u32,
-    robot: u32,
-}
-
 impl Requests {
-    pub(super) fn memory(&self) -> RequestsMemory {
-        RequestsMemory {
-            open: self.open.clone(),
-            claimed: self.claimed.clone(),
-            refused: self.refused.clone(),
-            refusals: self.refusals.iter().map(|&(luggage, robot)| Refusal { luggage, robot }).collect(),
-            visits: self.visits.values().cloned().collect(),
-            settled: self.settled.clone(),
-            delivered: self.delivered.clone(),
-            assigned: self.assigned.clone(),
-            requested: self.requested.iter().map(|(&luggage, &at)| Requested { luggage, at }).collect(),
-            of_elsewhere: self.of_elsewhere.iter().copied().collect(),
-        }
-    }
-
-    pub(super) fn restore(&mut self, memory: RequestsMemory) {
-        (self.open, self.claimed, self.refused) = (memory.open, memory.claimed, memory.refused);
-        self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
-        self.visits = memory.visits.into_iter().map(|visit| (visit.visit, visit)).collect();
-        (self.settled, self.delivered, self.assigned) = (memory.settled, memory.delivered, memory.assigned);
-        self.requested = memory.requested.iter().map(|requested| (requested.luggage, requested.at)).collect();
-        self.of_elsewhere = memory.of_elsewhere.into_iter().collect();
-        self.silent_at = self.rivals().filter_map(|rival| rival.until).min();
-    }
-
     /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Requests {
         Requests {
@@ -195,6 +154,9 @@ impl Requests {
             settled: Numbers::default(),
             delivered: Numbers::default(),
             assigned: Vec::new(),
+            said: BTreeMap::new(),
+            ordered: BTreeMap::new(),
+            done: Numbers::default(),
             requested: BTreeMap::new(),
             of_elsewhere: BTreeSet::new(),
             silent_at: None,
@@ -211,7 +173,8 @@ impl Requests {
                 request.learn(visit);
             }
         }
-        if !self.settled.contains(visit.visit) {
+        // Who took it may give it back.
+        if !self.delivered.contains(visit.visit) {
             self.visits.insert(visit.visit, visit.clone());
         }
     }
@@ -222,6 +185,11 @@ impl Requests {
         if header.is_from_elsewhere() && !withdrawn {
             self.of_elsewhere.insert(luggage);
         }
+        let ordered = self.ordered.entry(luggage).or_default();
+        if header.sent < *ordered {
+            return;
+        }
+        *ordered = header.sent;
         self.assigned.retain(|known| known.job.luggage != luggage);
         if self.assigned.len() >= MOST_ASSIGNED {
             self.assigned.remove(0);
@@ -239,14 +207,35 @@ impl Requests {
         self.of_elsewhere.contains(&luggage)
     }
 
-    /// The oldest assignment that the robot has not answered.
+    /// The oldest assignment that the robot has not answered, without visits whose blocks it has not heard of yet.
     pub fn assigned(&self) -> Option<&Assigned> {
-        self.assigned.first()
+        self.assigned.iter().find(|assigned| self.knows(assigned))
     }
 
     /// Ends the oldest assignment: the robot has answered it.
     pub fn answer_assignment(&mut self) -> Option<Assigned> {
-        (!self.assigned.is_empty()).then(|| self.assigned.remove(0))
+        let place = self.assigned.iter().position(|assigned| self.knows(assigned))?;
+        Some(self.assigned.remove(place))
+    }
+
+    fn knows(&self, assigned: &Assigned) -> bool {
+        let luggage = assigned.job.luggage;
+        assigned.withdrawn || !is_visit(luggage) || self.visits.contains_key(&luggage) || self.done.contains(luggage)
+    }
+
+    /// True if this robot has done the visit.
+    pub(in crate::robot) fn has_done(&self, visit: u32) -> bool {
+        self.done.contains(visit)
+    }
+
+    /// True if a robot has brought the luggage, or done the visit.
+    pub(in crate::robot) fn is_delivered(&self, luggage: u32) -> bool {
+        self.delivered.contains(luggage)
+    }
+
+    /// True if this robot refused the luggage.
+    pub(in crate::robot) fn has_refused(&self, luggage: u32) -> bool {
+        self.refused.iter().any(|refused| refused.luggage == luggage)
     }
 
     /// Takes luggage off the list: this robot brings it.
@@ -274,12 +263,16 @@ impl Requests {
         if matches!(event.stage, LuggageStage::Delivered | LuggageStage::GivenUp) {
             self.visits.remove(&event.luggage);
             self.of_elsewhere.remove(&event.luggage);
+            self.ordered.remove(&event.luggage);
         }
         if event.stage == LuggageStage::Delivered {
             self.delivered.insert(event.luggage);
         }
         if event.robot == self.number {
             return self.hear_own(event);
+        }
+        if self.is_outdated(event, header.sent) {
+            return;
         }
         match event.stage {
             LuggageStage::Refused => _ = self.refusals.insert((event.luggage, event.robot)),
@@ -306,7 +299,34 @@ impl Requests {
         }
     }
 
+    /// True if a robot said since whether it is interested.
+    fn is_outdated(&mut self, event: &EventLuggage, sent: Time) -> bool {
+        let EventLuggage { luggage, robot, stage, .. } = *event;
+        match stage {
+            LuggageStage::Interest | LuggageStage::Release | LuggageStage::Taken | LuggageStage::Refused => {
+                if self.delivered.contains(luggage) {
+                    return false;
+                }
+                let said = self.said.entry((luggage, robot)).or_default();
+                let is_outdated = sent < *said;
+                *said = sent.max(*said);
+                is_outdated && matches!(stage, LuggageStage::Interest | LuggageStage::Release)
+            }
+            LuggageStage::Delivered | LuggageStage::GivenUp => {
+                let of_luggage = self.said.range((luggage, 0)..=(luggage, u32::MAX)).map(|(key, _)| *key);
+                for key in of_luggage.collect::<Vec<_>>() {
+                    self.said.remove(&key);
+                }
+                false
+            }
+            LuggageStage::Request => false,
+        }
+    }
+
     fn hear_own(&mut self, event: &EventLuggage) {
+        if event.stage == LuggageStage::Delivered && is_visit(event.luggage) {
+            self.done.insert(event.luggage);
+        }
         match event.stage {
             // A robot also refuses the job of a broken robot, which may wait as luggage later.
             LuggageStage::Refused if self.open.iter().any(|open| open.job.luggage == event.luggage) => {
@@ -383,9 +403,10 @@ impl Requests {
     /// Keeps the open requests of a part of the map, for a robot that hears no more of the others.
     pub(in crate::robot) fn keep(&mut self, is_near: impl Fn(Block) -> bool) {
         self.open.retain(|request| is_near(request.job.from));
-        let Requests { open, claimed, requested, assigned, of_elsewhere, .. } = self;
+        let Requests { open, claimed, requested, said, assigned, of_elsewhere, .. } = self;
         let is_open = |luggage: u32| open.iter().chain(&*claimed).any(|request| request.job.luggage == luggage);
         requested.retain(|luggage, _| is_open(*luggage));
+        said.retain(|(luggage, _), _| is_open(*luggage));
         of_elsewhere.retain(|luggage| is_open(*luggage) || assigned.iter().any(|one| one.job.luggage == *luggage));
     }
 
