@@ -53,9 +53,9 @@ impl Known {
     /// Judges what a line says of the fleet, whatever is drawn of its ranges.
     fn judge_line(&self, text: &str, first: &PlannedEvent) -> Result<(), LineFault> {
         let is_fault = first.message.content == EventContent::Raised && FaultCall::is_one(&first.message.text);
-        let mut languages = EventLanguage::linked().filter(|one| is_fault || one.topic.name == first.topic);
+        let language = EventLanguage::linked().find(|one| !is_fault && one.topic.name == first.topic);
         let events = self.takers.events();
-        languages.try_for_each(|one| seen(&self.assembly, &first.site, |fleet| (one.judge)(fleet, events, text)))
+        language.map_or(Ok(()), |one| seen(&self.assembly, &first.site, |fleet| (one.judge)(fleet, events, text)))
     }
 
     /// Judges what one event names.
