@@ -17,6 +17,7 @@ mod frame;
 mod hear;
 mod incoming;
 mod outgoing;
+mod owners;
 mod peer;
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,7 @@ pub use self::frame::Frame;
 pub use self::incoming::Arrived;
 use self::incoming::Incoming;
 use self::outgoing::{Kept, Outgoing, Sent};
+use self::owners::Owner;
 use self::peer::Peer;
 use self::wire::{Again, Alive, Covered, Vote};
 
@@ -55,17 +57,6 @@ const MOST_AGAIN_BYTES: usize = 1 << 20;
 struct OwnTopic {
     is_state: bool,
     schema: u64,
-}
-
-/// The program that a component of another one runs in.
-#[derive(Clone, Copy, Debug)]
-struct Owner {
-    program: u64,
-    delivered: u64,
-    /// The program that it ran in before, and when that was over.
-    before: Option<(u64, u64)>,
-    /// True if it was told that the component runs in another program, too.
-    is_told: bool,
 }
 
 /// One program on a network.
@@ -350,55 +341,6 @@ impl Exchange {
             if !differs && self.is_of(program, &arrived.component) {
                 self.actions.push(Action::Deliver { program, topic: Arc::clone(topic), arrived });
             }
-        }
-    }
-
-    /// True if the messages of a component count that come from this program: the one in which it began last. A program
-    /// that was killed and begins anew is heard before the old one is missed.
-    fn is_of(&mut self, program: u64, component: &str) -> bool {
-        let now = self.now;
-        if self.settings.components.contains(component) {
-            // Messages of an earlier start of this program may be on their way.
-            if now > self.begun + self.settings.patience {
-                self.tell_twice(program, component);
-            }
-            return false;
-        }
-        let Some(owner) = self.owners.get_mut(component) else {
-            self.owners.insert(component.to_owned(), Owner { program, delivered: 1, before: None, is_told: false });
-            return true;
-        };
-        if owner.program == program {
-            owner.delivered += 1;
-            return true;
-        }
-        if owner.before.is_some_and(|(before, _)| before == program) {
-            return false;
-        }
-        let (before, after) = (owner.program, owner.delivered);
-        *owner = Owner { program, delivered: 1, before: Some((before, now)), is_told: false };
-        let name = self.name_of(program);
-        self.actions.push(Action::Tell(News::Anew { component: component.into(), program, name, after }));
-        true
-    }
-
-    /// A program is there: components of it that have begun anew elsewhere, some time ago, run twice.
-    fn note_twice(&mut self, program: u64) {
-        let (now, patience) = (self.now, self.settings.patience);
-        let is_twice =
-            |owner: &Owner| owner.before.is_some_and(|(before, at)| before == program && now > at + patience);
-        let twice = self.owners.iter().filter(|(_, owner)| is_twice(owner) && !owner.is_told);
-        let twice: Vec<String> = twice.map(|(component, _)| component.clone()).collect();
-        twice.iter().for_each(|component| self.tell_twice(program, component));
-    }
-
-    /// Tells once that a component runs in this program, too.
-    fn tell_twice(&mut self, program: u64, component: &str) {
-        let fresh = || Owner { program, delivered: 0, before: None, is_told: false };
-        let owner = self.owners.entry(component.to_owned()).or_insert_with(fresh);
-        if !std::mem::replace(&mut owner.is_told, true) {
-            let name = self.name_of(program);
-            self.actions.push(Action::Tell(News::Twice { component: component.into(), program, name }));
         }
     }
 
