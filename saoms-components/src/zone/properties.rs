@@ -44,22 +44,23 @@ impl ZoneProperties {
     /// # Errors
     /// The zone has blocks outside of the map, or none on it.
     pub(crate) fn territory(&self, term: u64, map: &Map) -> Result<Territory, Box<Finding>> {
-        let length = |given: Option<u32>, from: i32, most: u32, position: &str, property: &str| {
+        let length = |given: Option<u32>, from: i32, most: u32, [position, property, lines]: [&str; 3]| {
             let left = u32::try_from(i64::from(most) - i64::from(from)).unwrap_or(0);
             let length = given.unwrap_or(left);
             if left == 0 {
-                let message = format!("found {from}, but the map has {most} of them, from 0 to {}", most - 1);
-                return Err(Box::new(Finding::new(Place::property(position), message)));
+                let message = format!("found {from}, but the map has {most} {lines}, from 0 to {}", most - 1);
+                let finding = Finding::new(Place::property(position), message);
+                return Err(Box::new(finding.help(format!("write at most {}", most - 1))));
             }
             if length > left {
-                let message = format!("found {length}, but the map has only {left} from {from} on");
+                let message = format!("found {length}, but the map has only {left} {lines} from {from} on");
                 let finding = Finding::new(Place::property(property), message);
                 return Err(Box::new(finding.help(format!("write at most {left}"))));
             }
             Ok(length)
         };
-        let width = length(self.width, self.x, map.width(), "x", "width")?;
-        let height = length(self.height, self.y, map.height(), "y", "height")?;
+        let width = length(self.width, self.x, map.width(), ["x", "width", "columns"])?;
+        let height = length(self.height, self.y, map.height(), ["y", "height", "rows"])?;
         Ok(Territory { zone: self.number, term, corner: Block::new(self.x, self.y), width, height })
     }
 }
