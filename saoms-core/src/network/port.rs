@@ -1,7 +1,8 @@
 //! Where the threads of a run and of a transport leave what is for the thread of a network.
 
 use std::collections::VecDeque;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::fmt;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
 
 use saoms_api::CallError;
@@ -62,8 +63,14 @@ pub(super) struct LinkChange {
     pub(super) reason: String,
 }
 
+/// Who takes a frame at once, on the thread of the transport that brings it.
+pub(super) trait AtOnce: Send + Sync {
+    /// Takes a frame; false if the thread of the network has to. It waits neither for that nor for the transport.
+    fn take(&self, delivered: &Delivered<'_>) -> bool;
+}
+
 /// What waits for the thread of the network.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Waiting {
     pub(super) from_run: Vec<FromRun>,
     /// Messages that found no room.
@@ -74,14 +81,36 @@ pub(super) struct Waiting {
     pub(super) is_closed: bool,
     /// True once nobody takes anything any more.
     has_ended: bool,
+    /// True if the thread is to look at its times again.
+    is_nudged: bool,
     sleeps: bool,
+    /// Who takes frames at once.
+    at_once: Option<Weak<dyn AtOnce>>,
+}
+
+impl Waiting {
+    fn is_empty(&self) -> bool {
+        self.from_run.is_empty() && self.has_no_more_than_messages()
+    }
+
+    /// True if there is nothing but messages of components.
+    pub(super) fn has_no_more_than_messages(&self) -> bool {
+        let are_messages = self.from_run.iter().all(|from_run| matches!(from_run, FromRun::Message { .. }));
+        are_messages && self.frames.is_empty() && self.links.is_empty() && !self.is_nudged
+    }
 }
 
 /// The place where the threads of a run and of a transport leave what is for the thread of a network. Nobody waits.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Port {
     waiting: Mutex<Waiting>,
     filled: Condvar,
+}
+
+impl fmt::Debug for Port {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("Port").finish_non_exhaustive()
+    }
 }
 
 impl Port {
@@ -134,26 +163,49 @@ impl Port {
         }
     }
 
-    /// Takes what waits, at once or when there is something, for so long at most. Who does not know yet that the end
-    /// was asked for does not wait then.
-    pub(super) fn take(&self, patience: Duration, knows_end: bool) -> Waiting {
+    /// Waits until something is there, for so long at most. Who does not know yet that the end was asked for does not
+    /// wait then.
+    pub(super) fn wait(&self, patience: Duration, knows_end: bool) {
         let mut waiting = self.lock();
-        let is_empty = |one: &Waiting| one.from_run.is_empty() && one.frames.is_empty() && one.links.is_empty();
-        if is_empty(&waiting) && (knows_end || !waiting.is_closed) && patience > Duration::ZERO {
+        if waiting.is_empty() && (knows_end || !waiting.is_closed) && patience > Duration::ZERO {
             waiting.sleeps = true;
             waiting = self.filled.wait_timeout(waiting, patience).unwrap_or_else(PoisonError::into_inner).0;
             waiting.sleeps = false;
         }
-        let is_closed = waiting.is_closed;
-        let taken = std::mem::take(&mut *waiting);
-        waiting.is_closed = is_closed;
-        taken
+    }
+
+    /// Takes what waits.
+    pub(super) fn take(&self) -> Waiting {
+        let mut waiting = self.lock();
+        let rest = Waiting { is_closed: waiting.is_closed, at_once: waiting.at_once.clone(), ..Waiting::default() };
+        std::mem::replace(&mut *waiting, rest)
+    }
+
+    /// Lets this one take frames at once, while none waits.
+    pub(super) fn let_take(&self, at_once: Weak<dyn AtOnce>) {
+        self.lock().at_once = Some(at_once);
+    }
+
+    /// Has the thread of the network look at its times again.
+    pub(super) fn nudge(&self) {
+        let mut waiting = self.lock();
+        waiting.is_nudged = true;
+        self.wake(waiting);
     }
 }
 
 impl Receiver for Port {
     fn deliver(&self, delivered: Delivered<'_>) -> bool {
         let mut waiting = self.lock();
+        if waiting.frames.is_empty()
+            && let Some(at_once) = waiting.at_once.as_ref().and_then(Weak::upgrade)
+        {
+            drop(waiting);
+            if at_once.take(&delivered) {
+                return true;
+            }
+            waiting = self.lock();
+        }
         let size = delivered.message.len() + delivered.attachment.len();
         if waiting.bytes + size > MOST_BYTES {
             return false;

@@ -1,6 +1,7 @@
 //! The link of a program to the others of a network.
 
-use super::{Fleet, Member};
+use super::member::Member;
+use crate::network::Fleet;
 
 /// The kind of alerts of links.
 const LINK: &str = "link";

@@ -168,14 +168,17 @@ impl Exchange {
         self.actions.push(Action::Send { to, frame });
     }
 
-    /// Messages of a component of another program arrived, with their envelope.
-    pub fn receive(&mut self, topic: &str, bytes: &[u8], envelope: &[u8], now: u64) {
-        let Some((topic, own)) = self.reads.get_key_value(topic) else { return };
+    /// Messages of a component of another program arrived, with their envelope. True if some before them are missing,
+    /// and are to be asked for.
+    pub fn receive(&mut self, topic: &str, bytes: &[u8], envelope: &[u8], now: u64) -> bool {
+        let Some((topic, own)) = self.reads.get_key_value(topic) else { return false };
         let (topic, own) = (Arc::clone(topic), *own);
-        let Some(ArrivedFrame { program, schema, messages }) = ArrivedFrame::decode(bytes, envelope) else { return };
+        let Some(ArrivedFrame { program, schema, messages }) = ArrivedFrame::decode(bytes, envelope) else {
+            return false;
+        };
         self.pass(now);
         // One that was never heard is heard soon, and its messages are sent again.
-        let Some(peer) = self.peers.get_mut(&program) else { return };
+        let Some(peer) = self.peers.get_mut(&program) else { return false };
         let incoming = peer.incoming.entry(Arc::clone(&topic)).or_default();
         if schema != own.schema && peer.differing.insert(Arc::clone(&topic)) {
             let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
@@ -189,8 +192,10 @@ impl Exchange {
             }
         }
         note_missing(incoming, now);
+        let is_missing = incoming.ask_at.is_some();
         self.has_news = true;
         self.deliver(program, &topic, ready);
+        is_missing
     }
 
     /// Another program asks for messages again.
@@ -328,6 +333,11 @@ impl Exchange {
             self.begun = now;
         }
         self.now = self.now.max(now);
+    }
+
+    /// True if a sign of life is due at once.
+    pub fn has_to_speak(&self) -> bool {
+        self.sign_at == 0
     }
 
     fn say_soon(&mut self) {

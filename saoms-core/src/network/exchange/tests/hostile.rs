@@ -91,7 +91,9 @@ proptest! {
         for said in all {
             match said {
                 Said::Alive(alive) => exchange.hear(&alive, now),
-                Said::Message(topic, envelope) => exchange.receive(topic, b"message", &cdr::encode(&envelope), now),
+                Said::Message(topic, envelope) => {
+ exchange.receive(topic, b"message", &cdr::encode(&envelope), now);
+}
                 Said::Again(again) => exchange.answer(&again),
                 Said::Covered(covered) => exchange.cover(&covered, now),
                 Said::Own(is_state) => exchange.send(OwnMessage {

@@ -292,7 +292,9 @@ impl Lossy {
             let (exchange, now) = (&mut self.programs[reader].exchange, self.now);
             let is_mine = |program: &u64| *program == reader as u64;
             match to {
-                Destination::Topic(topic, _) => exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now),
+                Destination::Topic(topic, _) => {
+                    exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now);
+                }
                 Destination::Again(program, topic) if is_mine(program) => {
                     exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now);
                 }

@@ -1,0 +1,452 @@
+//! The state of a program's part of a network.
+
+use std::collections::{BTreeSet, HashMap, VecDeque};
+use std::sync::Arc;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use saoms_api::Level;
+use saoms_api::host::{cdr, shown};
+
+use super::super::control::{Answer, Ask, Asked, Other, Requests};
+use super::super::exchange::call::Outcome;
+use super::super::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
+use super::super::fleet::{Fleet, FromNetwork, Membership};
+use super::super::port::{Frame, FromRun, Port, Waiting};
+use super::super::rights::{Granted, Rights};
+use super::super::ticket::Ticket;
+use super::super::told::told;
+use super::super::transport::{Delivered, TransportSession};
+use super::super::{FROM_OUTSIDE, key};
+use super::link::Link;
+use super::{ACCESS, ALIVE, ASK, CALL, CONTROL, COVERED, FIRST_OF_TOPICS, REPLY};
+
+/// Versions of other programs that are told, at most.
+const MOST_VERSIONS: usize = 8;
+/// Longest time between two looks at what is due, in nanoseconds.
+const LONGEST_PAUSE: u64 = 200_000_000;
+/// Time after which messages are offered again for which the fleet had no room.
+const ROOM_AGAIN: Duration = Duration::from_millis(1);
+/// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
+/// they have.
+const MOST_UNDELIVERED: usize = 4_096;
+/// Messages of components after which the network gets what they say, at most.
+const MOST_AT_ONCE: usize = 1_024;
+/// The kind of alerts of programs that give no sign of life.
+const UNREACHABLE: &str = "unreachable";
+/// Time from one word of a router about rights to the next.
+const ACCESS_AGAIN: Duration = Duration::from_secs(1);
+
+/// The key, the message and the envelope of something that is to be sent.
+type Unsent = (String, Arc<[u8]>, Option<Arc<[u8]>>);
+
+/// What is known and left to do. The thread of the network has it while it works; in between others do what cannot
+/// wait.
+pub(super) struct Member<F> {
+    /// Until the end.
+    session: Option<TransportSession>,
+    pub(super) exchange: Exchange,
+    pub(super) fleet: F,
+    /// Messages for which the fleet had no room.
+    undelivered: VecDeque<FromNetwork>,
+    /// What the transport had no room for.
+    unsent: VecDeque<Unsent>,
+    start: Instant,
+    /// When the exchange has something to do.
+    next: u64,
+    program: u64,
+    /// Time without a sign of life after which a program is missed, in nanoseconds: news are everywhere by then.
+    pub(super) patience: u64,
+    /// Time since which no program sees work left.
+    done_since: Option<u64>,
+    /// True if it was told that programs are waited for.
+    has_told_who_lacks: bool,
+    pub(super) membership: Membership,
+    /// What the user of this program may do.
+    rights: Option<Rights>,
+    /// When the router last said what users may do.
+    granted_at: Option<Instant>,
+    /// The token of the next subscription: no two have the same.
+    next_token: u64,
+    /// Versions of other programs that were told.
+    others: BTreeSet<String>,
+    /// Where the outcomes of calls go, by their lines and numbers.
+    tickets: HashMap<(u64, u64), Arc<Ticket>>,
+    pub(super) link: Link,
+    /// The requests of operators.
+    requests: Requests,
+    port: Arc<Port>,
+    /// The name of the program for people.
+    name: String,
+}
+
+impl<F: Fleet> Member<F> {
+    /// A member that is about to begin.
+    pub(super) fn new(
+        session: TransportSession,
+        port: &Arc<Port>,
+        settings: Settings,
+        membership: Membership,
+        fleet: F,
+    ) -> Member<F> {
+        Member {
+            session: Some(session),
+            fleet,
+            undelivered: VecDeque::new(),
+            unsent: VecDeque::new(),
+            start: Instant::now(),
+            next: 0,
+            program: settings.program,
+            patience: settings.patience,
+            done_since: None,
+            has_told_who_lacks: false,
+            rights: membership.user.clone().map(|user| Rights::new(membership.url.clone(), user)),
+            membership,
+            granted_at: None,
+            next_token: FIRST_OF_TOPICS,
+            others: BTreeSet::new(),
+            tickets: HashMap::new(),
+            link: Link::default(),
+            requests: Requests::default(),
+            port: Arc::clone(port),
+            name: settings.name.clone(),
+            exchange: Exchange::new(settings),
+        }
+    }
+
+    /// True if nothing is due yet beside messages of components.
+    pub(super) fn has_time(&self) -> bool {
+        self.sleep() > ROOM_AGAIN && !self.exchange.has_to_speak()
+    }
+
+    /// Does what is due.
+    pub(super) fn attend(&mut self) {
+        let now = self.now();
+        self.next = self.exchange.tick(now).min(now + LONGEST_PAUSE);
+        self.carry_out();
+        self.grant();
+        self.fleet.deliver(&mut self.undelivered);
+        self.agree(now);
+        self.watch_link(now);
+        self.requests.forget(now);
+    }
+
+    /// Takes messages of a topic on the thread that brings them: to wake another one would take longer than all else.
+    pub(super) fn take_at_once(&mut self, delivered: &Delivered<'_>) {
+        let now = self.now();
+        let is_missing = self.take_messages(delivered, now);
+        self.act();
+        self.fleet.deliver(&mut self.undelivered);
+        if is_missing || !self.undelivered.is_empty() {
+            self.port.nudge();
+        }
+    }
+
+    /// True if nothing is left for others to receive.
+    pub(super) fn has_sent_all(&self) -> bool {
+        self.exchange.is_complete() && !self.exchange.awaits_answers() && self.unsent.is_empty()
+    }
+
+    /// Leaves the network. Gives the session, which is to be closed.
+    pub(super) fn end(&mut self) -> Option<TransportSession> {
+        self.exchange.leave();
+        self.carry_out();
+        self.port.end();
+        self.tickets.drain().for_each(|(_, ticket)| ticket.fill(Outcome::Dropped));
+        self.session.take()
+    }
+
+    /// Lets the run end when no program has seen work left for so long that messages on their way have arrived.
+    fn agree(&mut self, now: u64) {
+        self.exchange.vote(self.fleet.vote());
+        if let Some(unheard) = self.exchange.waits_for()
+            && !std::mem::replace(&mut self.has_told_who_lacks, true)
+        {
+            let names: Vec<String> = unheard.iter().map(|name| format!("`{name}`")).collect();
+            let (nodes, have) = if names.len() == 1 { ("node", "has") } else { ("nodes", "have") };
+            let text = format!(
+                "no work is left, but {nodes} {} {have} not been there yet: the program waits for them",
+                names.join(", ")
+            );
+            self.fleet.tell(Level::Warning, text);
+        }
+        let is_done = self.exchange.is_done() && self.exchange.is_complete() && self.undelivered.is_empty();
+        let since = self.done_since.filter(|_| is_done);
+        self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
+        self.done_since = is_done.then(|| since.unwrap_or(now));
+    }
+
+    /// Tells, as the router, what users may do.
+    fn grant(&mut self) {
+        let Some(grants) = &self.membership.grants else { return };
+        if self.granted_at.is_none_or(|at| at.elapsed() >= ACCESS_AGAIN) {
+            self.granted_at = Some(Instant::now());
+            self.put(&key::access(), &cdr::encode(grants), None);
+        }
+    }
+
+    pub(super) fn now(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    /// Time for which there is nothing to do.
+    pub(super) fn sleep(&self) -> Duration {
+        if !self.undelivered.is_empty() || !self.unsent.is_empty() {
+            return ROOM_AGAIN;
+        }
+        Duration::from_nanos(self.next.saturating_sub(self.now()))
+    }
+
+    /// Takes what waited at the port.
+    pub(super) fn take(&mut self, waiting: Waiting) {
+        let (reads, messages): (Vec<FromRun>, Vec<FromRun>) =
+            waiting.from_run.into_iter().partition(|from_run| matches!(from_run, FromRun::Reads { .. }));
+        if !reads.is_empty() {
+            reads.into_iter().for_each(|reads| self.take_from_run(reads));
+            // Who answers the first message has heard what this program reads.
+            self.next = self.exchange.tick(self.now());
+            self.carry_out();
+        }
+        for (place, message) in messages.into_iter().enumerate() {
+            self.take_from_run(message);
+            if place % MOST_AT_ONCE == MOST_AT_ONCE - 1 {
+                self.carry_out();
+            }
+        }
+        self.carry_out();
+        if waiting.lost > 0 {
+            let text =
+                format!("{} messages were sent faster than the network could take them, and are lost", waiting.lost);
+            self.fleet.tell(Level::Error, text);
+        }
+        for link in waiting.links {
+            let now = self.now();
+            self.link.note(link.is_up, now);
+            let (level, what) = if link.is_up { (Level::Info, "is there") } else { (Level::Warning, "was lost") };
+            let reason = if link.reason.is_empty() { String::new() } else { format!(": {}", link.reason) };
+            self.fleet.tell(level, format!("the link to the network {what}{reason}"));
+        }
+        let now = self.now();
+        for frame in waiting.frames {
+            self.take_frame(&frame, now);
+        }
+    }
+
+    fn take_from_run(&mut self, from_run: FromRun) {
+        match from_run {
+            FromRun::Reads { topic, is_state, schema } => {
+                let again = key::again(self.program, &topic);
+                for keys in [key::of_topic(&topic), again] {
+                    let token = self.next_token;
+                    self.next_token += 1;
+                    let Some(session) = &self.session else { return };
+                    if let Err(error) = session.subscribe(&keys, token) {
+                        let text = format!("topic `{topic}` cannot be read from the network: {error}");
+                        self.fleet.tell(Level::Error, text);
+                    }
+                }
+                let readers = self.membership.readers(&topic);
+                if let Some(told) = self.rights.as_mut().and_then(|rights| rights.read(&topic, &readers)) {
+                    self.fleet.tell(Level::Error, told);
+                }
+                self.exchange.read(&topic, is_state, schema);
+            }
+            FromRun::Call { call, ticket } => {
+                if let Some(told) = self.rights.as_mut().and_then(|rights| rights.call(&call.caller)) {
+                    self.fleet.tell(Level::Error, told);
+                }
+                let line = call.line;
+                let number = self.exchange.call(call, self.now());
+                self.tickets.insert((line, number), ticket);
+            }
+            FromRun::Beat { node, component, caller, period } => {
+                self.exchange.beat(&node, &component, &caller, period);
+            }
+            FromRun::Reply { program, line, number, answer } => self.exchange.reply(program, line, number, answer),
+            FromRun::Unserved { program, line, number } => self.exchange.unserved(program, line, number),
+            FromRun::Answer { asker, answer } => {
+                let others = self.exchange.others().map(|(program, name)| Other { program, name: name.to_string() });
+                let answer = self.requests.answer(asker, answer, (self.program, &self.name), others.collect());
+                answer.into_iter().for_each(|answer| self.put_answer(asker, &answer));
+            }
+            FromRun::Message { topic, mut component, to, is_state, schema, message } => {
+                if let Some(told) = self.rights.as_mut().and_then(|rights| rights.write(&topic, &component)) {
+                    self.fleet.tell(Level::Error, told);
+                }
+                if &*component == FROM_OUTSIDE {
+                    // What comes from outside to two programs comes from two senders.
+                    component = format!("{component} {:x}", self.program).into();
+                }
+                let sent = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+                self.exchange.send(OwnMessage {
+                    topic: &topic,
+                    is_state,
+                    component: &component,
+                    to,
+                    key: message.key(),
+                    sent: u64::try_from(sent).unwrap_or(u64::MAX),
+                    schema,
+                    cause: message.header().cause.0,
+                    bytes: message.bytes(),
+                });
+            }
+        }
+    }
+
+    fn take_frame(&mut self, frame: &Frame, now: u64) {
+        // What is not what it should be comes from somebody who speaks another language: it is nothing to this program.
+        match frame.token {
+            ALIVE if key::version(&frame.key) != Some(key::VERSION) => {
+                let version = key::version(&frame.key).unwrap_or_default().to_owned();
+                if self.others.len() < MOST_VERSIONS && self.others.insert(version.clone()) {
+                    let text = format!(
+                        "a program on the network `{}` speaks version {} of its language, and this one version {}: they do \
+                         not hear each other; build both from one version",
+                        self.membership.url,
+                        shown(version.as_bytes()),
+                        key::VERSION
+                    );
+                    self.fleet.tell(Level::Error, text);
+                }
+            }
+            ACCESS => {
+                let Some((rights, granted)) = self.rights.as_mut().zip(cdr::decode::<Granted>(&frame.message).ok())
+                else {
+                    return;
+                };
+                let membership = &self.membership;
+                let told = rights.hear(&granted, |topic| membership.readers(topic));
+                told.into_iter().for_each(|text| self.fleet.tell(Level::Error, text));
+            }
+            ALIVE => {
+                if let Ok(alive) = cdr::decode(&frame.message) {
+                    self.exchange.hear(&alive, now);
+                }
+            }
+            ASK => {
+                if let Ok(again) = cdr::decode(&frame.message) {
+                    self.exchange.answer(&again);
+                }
+            }
+            COVERED => {
+                if let Ok(covered) = cdr::decode(&frame.message) {
+                    self.exchange.cover(&covered, now);
+                }
+            }
+            CALL => {
+                if let Ok(request) = cdr::decode(&frame.message) {
+                    self.exchange.take_request(request, now);
+                }
+            }
+            REPLY => {
+                if let Ok(reply) = cdr::decode(&frame.message) {
+                    self.exchange.take_reply(reply, now);
+                }
+            }
+            CONTROL => {
+                let Ok(ask) = cdr::decode::<Ask>(&frame.message) else { return };
+                let asker = ask.asker;
+                match self.requests.take(ask, self.program, &self.port, now) {
+                    None => {}
+                    Some(Asked::New(request, reply)) => self.fleet.control(request, reply),
+                    Some(Asked::Again(answers)) => {
+                        answers.iter().for_each(|answer| self.put_answer(asker, answer));
+                    }
+                }
+            }
+            FIRST_OF_TOPICS.. => {
+                let Frame { token, key, message, attachment } = frame;
+                self.take_messages(&Delivered { token: *token, key, message, attachment }, now);
+            }
+            _ => {}
+        }
+        self.carry_out();
+    }
+
+    /// Takes messages of a topic. True if some before them are missing.
+    fn take_messages(&mut self, delivered: &Delivered<'_>, now: u64) -> bool {
+        // Senders keep what is dropped here, and send it again.
+        if self.undelivered.len() > MOST_UNDELIVERED {
+            return false;
+        }
+        let is_again = !(delivered.token - FIRST_OF_TOPICS).is_multiple_of(2);
+        let topic = delivered.key.split('/').nth(if is_again { 4 } else { 3 }).and_then(key::name);
+        topic.is_some_and(|topic| self.exchange.receive(&topic, delivered.message, delivered.attachment, now))
+    }
+
+    fn carry_out(&mut self) {
+        while let Some((key, bytes, envelope)) = self.unsent.pop_front() {
+            if !self.put(&key, &bytes, envelope.as_deref()) {
+                self.unsent.push_front((key, bytes, envelope));
+                break;
+            }
+        }
+        self.act();
+    }
+
+    /// Does what the exchange wants.
+    fn act(&mut self) {
+        for action in self.exchange.take_actions() {
+            match action {
+                Action::Put { to, bytes } => self.put_or_keep(&to, bytes, None),
+                Action::Send { to, frame } => {
+                    let (bytes, envelope) = frame.encode();
+                    self.put_or_keep(&to, bytes, Some(envelope));
+                }
+                Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
+                Action::Serve(request) => self.fleet.serve(request),
+                Action::Answered { line, number, outcome } => {
+                    if let Some(ticket) = self.tickets.remove(&(line, number)) {
+                        ticket.fill(outcome);
+                    }
+                }
+                Action::Tell(news) => {
+                    if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
+                        self.fleet.misses(name);
+                    }
+                    let (level, text) = told(&news);
+                    match &news {
+                        News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
+                        News::Back { name, .. } | News::Left { name, .. } => {
+                            self.fleet.alert(UNREACHABLE, name, None);
+                            self.fleet.tell(level, text);
+                        }
+                        _ => self.fleet.tell(level, text),
+                    }
+                }
+            }
+        }
+    }
+
+    fn put_or_keep(&mut self, to: &Destination, bytes: Arc<[u8]>, envelope: Option<Arc<[u8]>>) {
+        let key = match to {
+            Destination::Topic(topic, component) => key::topic(topic, component),
+            Destination::Again(program, topic) => key::again(*program, topic),
+            Destination::Alive(program) => key::alive(*program),
+            Destination::Ask(program) => key::ask(*program),
+            Destination::Covered(program) => key::covered(*program),
+            Destination::Call(program) => key::call(*program),
+            Destination::Reply(program) => key::reply(*program),
+        };
+        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
+            self.unsent.push_back((key, bytes, envelope));
+        }
+    }
+
+    fn put_answer(&self, asker: u64, answer: &Answer) {
+        // It is asked for again if there is no room for it.
+        self.put(&key::controlled(asker), &cdr::encode(answer), None);
+    }
+
+    /// Puts something on the network; false if there is no room for it.
+    fn put(&self, key: &str, bytes: &[u8], envelope: Option<&[u8]>) -> bool {
+        let Some(session) = &self.session else { return true };
+        match session.put(key, bytes, envelope.unwrap_or_default(), envelope.is_none()) {
+            Ok(is_put) => is_put,
+            // It is sent again when somebody lacks it.
+            Err(error) => {
+                self.fleet.tell(Level::Warning, format!("the network did not take `{key}`: {error}"));
+                true
+            }
+        }
+    }
+}
