@@ -252,6 +252,8 @@ pub struct ClassView<'a> {
     pub extends: Vec<&'a str>,
     /// The topics that it and the loops publish, by their names before any `topicRename`.
     pub publishes: Vec<&'a str>,
+    /// The topics that it and the loops read, by their names before any `topicRename`. A rule of a library gets none.
+    pub subscribes: Vec<&'a str>,
     /// The classes of the loops, in their order.
     pub loops: Vec<&'a str>,
     /// The events that it takes. A rule of a library gets none.

@@ -94,6 +94,7 @@ unsafe fn read_member<'a>(
                 extends: read_texts(&view.extends)?,
                 publishes: read_texts(&view.publishes)?,
                 loops: read_texts(&view.loops)?,
+                subscribes: Vec::new(),
                 takes: Vec::new(),
             }),
             values,

@@ -86,12 +86,14 @@ pub struct LineFault {
     pub instead: Option<String>,
     /// Advice.
     pub help: Option<String>,
+    /// The code of the rule over fleets that finds it, whose severity users can set.
+    pub code: Option<&'static str>,
 }
 
 impl LineFault {
     /// A fault without advice.
     pub fn new(bytes: Range<usize>, message: impl Into<String>) -> LineFault {
-        LineFault { bytes, message: message.into(), instead: None, help: None }
+        LineFault { bytes, message: message.into(), instead: None, help: None, code: None }
     }
 
     /// Adds the suggested replacement.
@@ -104,6 +106,12 @@ impl LineFault {
     #[must_use]
     pub fn help(self, text: impl Into<String>) -> LineFault {
         LineFault { help: Some(text.into()), ..self }
+    }
+
+    /// The same fault, found by a rule over fleets.
+    #[must_use]
+    pub fn code(self, code: &'static str) -> LineFault {
+        LineFault { code: Some(code), ..self }
     }
 
     /// The same fault at another place.

@@ -14,6 +14,7 @@ use super::scenario::line::{read_outside, split};
 use super::scenario::{Before, Vocabulary};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
+use crate::rules::peers::judge_disturbance;
 use crate::rules::scenario::{judge_luggage, judge_outage, judge_robot, no_work};
 use crate::text::{TextFault, bytes};
 
@@ -167,7 +168,9 @@ fn judge(fleet: &FleetView<'_>, events: &Events, line: &str) -> Result<(), LineF
         let Ok((read, _)) = read_outside(part, Before::Event, Vocabulary::with(events)) else { continue };
         let offset = bytes(line, part).start;
         judge_outage(fleet, &read.event).map_err(|fault| fault.moved(offset + read.bytes.start))?;
-        let judged = judge_robot(fleet, &read, part).and_then(|()| judge_luggage(fleet, &read.event));
+        let judged = judge_robot(fleet, &read, part)
+            .and_then(|()| judge_luggage(fleet, &read.event))
+            .and_then(|()| judge_disturbance(fleet, &read.event, read.bytes.clone()));
         judged.map_err(|fault| fault.moved(offset))?;
     }
     Ok(())
@@ -179,7 +182,7 @@ impl EventReader for Reader {
         for part in split(line) {
             let offset = bytes(line, part).start;
             messages.extend(self.part(part, now, events).map_err(|TextFault { bytes, message, instead, help }| {
-                LineFault { bytes, message, instead, help }.moved(offset)
+                LineFault { bytes, message, instead, help, code: None }.moved(offset)
             })?);
         }
         Ok(messages)

@@ -10,17 +10,17 @@ mod robots;
 mod strain;
 mod tide;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_api::event::fault::FaultCall;
+use saoms_api::event::fault::{FaultCall, FaultKind, is_named};
 use saoms_api::extension::{Counts, InvariantsRegistration, Measure, RunInvariants, Violation, submit};
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use crate::messages::{
     AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, DRAIN, EVENT_LUGGAGE, FAULT, OUTAGE, POSITION, REMOVAL,
-    ROBOT_LIST, SLOW, carries,
+    ROBOT_LIST, SLOW, TERRITORY, carries,
 };
 use luggage::Pieces;
 use robots::Robots;
@@ -59,6 +59,7 @@ enum Content {
     Slow,
     Drain,
     Outage,
+    Territory,
 }
 
 /// The invariants of one run. Each site has robots and luggage of its own.
@@ -66,6 +67,8 @@ enum Content {
 struct FleetInvariants {
     topics: HashMap<String, (String, Content)>,
     sites: BTreeMap<String, Site>,
+    /// Worlds and zones, without which no robot moves.
+    indispensable: BTreeSet<String>,
     tide: Tide,
     looked: Time,
     found: Vec<Violation>,
@@ -106,6 +109,7 @@ fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
         one if carries(one, &SLOW) => Content::Slow,
         one if carries(one, &DRAIN) => Content::Drain,
         one if carries(one, &OUTAGE) => Content::Outage,
+        one if carries(one, &TERRITORY) => Content::Territory,
         _ => return None,
     })
 }
@@ -135,14 +139,18 @@ impl RunInvariants for FleetInvariants {
         true
     }
 
-    fn message(&mut self, topic: &str, _component: &str, message: &SharedMessage) {
+    fn message(&mut self, topic: &str, component: &str, message: &SharedMessage) {
         let Some((site, content)) = self.topics.get(topic) else { return };
+        if matches!(content, Content::Area | Content::Territory) && !self.indispensable.contains(component) {
+            self.indispensable.insert(component.to_owned());
+        }
         let at = message.header().sent;
         let state = self.sites.entry(site.clone()).or_default();
         let mut finder = Finder { site, at, found: &mut self.found };
         let Site { robots, pieces } = state;
         match content {
             Content::Area => robots.hear_area(message),
+            Content::Territory => {}
             Content::Position => robots.hear_position(message, &mut finder),
             Content::Robot => robots.hear_state(message, &self.tide, &mut finder),
             Content::Collision => robots::hear_collision(message, &mut finder),
@@ -170,7 +178,12 @@ impl RunInvariants for FleetInvariants {
     }
 
     fn fault(&mut self, at: Time, call: &FaultCall) {
-        self.tide.begin(at, call);
+        let ends_all = matches!(call.kind, FaultKind::Crash { restart: None })
+            && call.to.iter().any(|name| self.indispensable.iter().any(|component| is_named(&name.text, component)));
+        match ends_all {
+            true => self.tide.rise_until(None),
+            false => self.tide.begin(at, call),
+        }
     }
 
     fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>) {
@@ -184,7 +197,8 @@ impl RunInvariants for FleetInvariants {
             waits.extend(pieces.waits());
         }
         let counted = usize::try_from(counts("luggage.delivered")).unwrap_or_default();
-        if delivered > counted {
+        // A world of another program counts nothing here.
+        if delivered > counted && counted > 0 {
             let text =
                 format!("robots said of {delivered} pieces that they were delivered, the world counted {counted}");
             Finder { site: "", at, found: &mut self.found }.note(ONCE, text);

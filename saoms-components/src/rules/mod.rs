@@ -15,7 +15,7 @@ mod map;
 mod masters;
 mod missing_loop;
 mod number;
-mod peers;
+pub(crate) mod peers;
 mod robots;
 pub(crate) mod scenario;
 mod shifts;

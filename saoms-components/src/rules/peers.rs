@@ -1,7 +1,10 @@
 //! Rules: robots that agree among themselves on blocks may hear of each other too late.
 
+use std::ops::Range;
+
 use saoms_api::event::Word;
 use saoms_api::event::fault::{FaultCall, FaultKind, is_named};
+use saoms_api::extension::LineFault;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
@@ -19,7 +22,7 @@ pub(super) static FAULTS: FleetRule = FleetRule {
     code: Code {
         id: "S5024",
         name: "positions-disturbed",
-        meaning: "A scenario loses or delays messages about positions between robots of the policy `safe`, whose site \
+        meaning: "A scenario or `--faults` loses or delays messages about positions between robots of the policy `safe`, whose site \
             has no zone. They agree among themselves on who enters a block, and collide if they hear of each other too \
             late.",
         severity: Severity::Error,
@@ -65,11 +68,7 @@ fn disturbed(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let finding = |line: &Line, index: usize| {
-        let EventSpec::Raised(text) = &line.event else { return None };
-        let call = FaultCall::is_one(text).then(|| FaultCall::read(text).ok()).flatten()?;
-        let (one, other) = pair(fleet, &peers, &call)?;
-        let paths = [one, other].map(|robot| fleet.components()[robot].path);
-        let message = format!("`{}` may hear too late where `{}` is, and collide with it", paths[1], paths[0]);
+        let (message, other) = disturbance(fleet, &peers, &line.event)?;
         let place = Place::property("scenario").part(line.text as usize, line.bytes.clone()).in_component(index);
         Some(Finding::new(place, message).label(Place::component(other), "the policy `safe` without a zone").help(HELP))
     };
@@ -78,6 +77,30 @@ fn disturbed(fleet: &FleetView<'_>) -> Vec<Finding> {
         scenario.lines().iter().find_map(|line| finding(line, index))
     });
     found.collect()
+}
+
+/// Judges an event that does not stand in a scenario. Places are bytes of its text.
+///
+/// # Errors
+/// It is a fault by which robots hear too late where others are.
+pub(crate) fn judge_disturbance(
+    fleet: &FleetView<'_>,
+    event: &EventSpec,
+    bytes: Range<usize>,
+) -> Result<(), LineFault> {
+    match disturbance(fleet, &peers(fleet), event) {
+        Some((message, _)) => Err(LineFault::new(bytes, message).help(HELP).code(FAULTS.code.id)),
+        None => Ok(()),
+    }
+}
+
+/// What a fault does to robots that agree among themselves on blocks, and the one that hears too late.
+fn disturbance(fleet: &FleetView<'_>, peers: &[usize], event: &EventSpec) -> Option<(String, usize)> {
+    let EventSpec::Raised(text) = event else { return None };
+    let call = FaultCall::is_one(text).then(|| FaultCall::read(text).ok()).flatten()?;
+    let (one, other) = pair(fleet, peers, &call)?;
+    let paths = [one, other].map(|robot| fleet.components()[robot].path);
+    Some((format!("`{}` may hear too late where `{}` is, and collide with it", paths[1], paths[0]), other))
 }
 
 /// The first two robots of which a fault keeps the second one from hearing in time where the first one is.

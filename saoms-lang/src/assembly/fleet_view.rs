@@ -60,13 +60,15 @@ fn renamed(spec: &ComponentSpec) -> Vec<(&str, Cow<'_, str>)> {
 
 /// A class with these loops, as rules see it.
 pub(crate) fn class_view<'s>(class: &'s RegisteredClass, loops: &'s [LoopSpec]) -> ClassView<'s> {
-    let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
-    let published = class.declaration().publishes.iter().chain(of_loops);
+    let of_loops = || loops.iter().map(|one| one.class.declaration());
+    let published = class.declaration().publishes.iter().chain(of_loops().flat_map(|one| &one.publishes));
+    let read = class.declaration().subscribes.iter().chain(of_loops().flat_map(|one| &one.subscribes));
     ClassView {
         name: &class.declaration().name,
         declaration: class.declaration_json(),
         extends: class.extended_json().collect(),
         publishes: published.map(|topic| topic.name.as_str()).collect(),
+        subscribes: read.map(|topic| topic.name.as_str()).collect(),
         loops: loops.iter().map(|one| one.class.name()).collect(),
         takes: class.declaration().events().collect(),
     }

@@ -187,8 +187,9 @@ impl Cells<'_> {
                 all.push(cells);
             }
         }
-        if all.len() < count.min(most) && faults.is_empty() {
-            let message = format!("found {} lines, expected {count} as this says", all.len());
+        let present = self.lines().skip(1).take(count).count();
+        if present < count && faults.is_empty() {
+            let message = format!("found {present} lines, expected {count} as this says");
             faults.push(ProblemFault::at(self.path, self.text, at, message, "correct the number, or add the lines"));
         }
         all

@@ -10,6 +10,7 @@ use saoms_api::extension::{EventContent, EventLanguage, LineFault, TimedMessage}
 use saoms_api::host::format_duration;
 use saoms_core::schedule::{Handle, Takers};
 use saoms_lang::assembly::{Assembly, fault_subjects, seen};
+use saoms_lang::diagnostic::{Severity, SeverityLevel};
 use saoms_lang::load::missing_file_help;
 
 use super::events::{Languages, Numbers, happen, shown, site_of};
@@ -33,17 +34,35 @@ pub(in crate::command) struct PlannedEvent {
     topic: &'static str,
 }
 
+/// What a script does in a run.
+#[derive(Clone, Debug)]
+pub(in crate::command) struct Planned {
+    /// Its events.
+    pub(in crate::command) events: Vec<PlannedEvent>,
+    /// What would be wrong with its lines, but for severities that the command line sets; for people.
+    pub(in crate::command) lowered: Vec<String>,
+}
+
 /// What the lines of a script can name.
 #[derive(Debug)]
 pub(in crate::command) struct Known {
     takers: Takers,
     /// By the site; empty for all.
     assembly: Assembly,
+    /// Severities of the command line, as `CODE=LEVEL`.
+    severities: Vec<String>,
 }
 
 impl Known {
-    pub(in crate::command) fn of(assembly: &Assembly) -> Known {
-        Known { takers: Takers::of_assembly(assembly), assembly: assembly.clone() }
+    /// What is known of a fleet, and the severities that its command line sets.
+    pub(in crate::command) fn of(assembly: &Assembly, severities: &[String]) -> Known {
+        Known { takers: Takers::of_assembly(assembly), assembly: assembly.clone(), severities: severities.to_vec() }
+    }
+
+    /// The severity that the command line sets for a code.
+    fn level(&self, code: &str) -> Option<SeverityLevel> {
+        let levels = self.severities.iter().filter_map(|one| one.split_once('=').filter(|(of, _)| *of == code));
+        levels.filter_map(|(_, level)| SeverityLevel::from_name(level.split(':').next()?)).next()
     }
 
     fn subjects(&self, site: &str) -> FaultSubjects {
@@ -53,9 +72,9 @@ impl Known {
     /// Judges what a line says of the fleet, whatever is drawn of its ranges.
     fn judge_line(&self, text: &str, first: &PlannedEvent) -> Result<(), LineFault> {
         let is_fault = first.message.content == EventContent::Raised && FaultCall::is_one(&first.message.text);
-        let language = EventLanguage::linked().find(|one| !is_fault && one.topic.name == first.topic);
+        let mut languages = EventLanguage::linked().filter(|one| is_fault || one.topic.name == first.topic);
         let events = self.takers.events();
-        language.map_or(Ok(()), |one| seen(&self.assembly, &first.site, |fleet| (one.judge)(fleet, events, text)))
+        languages.try_for_each(|one| seen(&self.assembly, &first.site, |fleet| (one.judge)(fleet, events, text)))
     }
 
     /// Judges what one event names.
@@ -91,7 +110,11 @@ impl FaultScript {
             return refuse(format!("it has {size} bytes, at most {LARGEST} are read"), None);
         }
         match fs::read_to_string(path) {
-            Ok(text) => Some(FaultScript { path: displayed(path).to_string(), text }),
+            Ok(text) => {
+                // A mark of the encoding, as some editors write it.
+                let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
+                Some(FaultScript { path: displayed(path).to_string(), text })
+            }
             Err(error) => refuse(error.to_string(), None),
         }
     }
@@ -100,9 +123,9 @@ impl FaultScript {
     ///
     /// # Errors
     /// What is wrong with each line, for people.
-    pub(in crate::command) fn events(&self, known: &Known, seed: u64) -> Result<Vec<PlannedEvent>, Vec<String>> {
+    pub(in crate::command) fn events(&self, known: &Known, seed: u64) -> Result<Planned, Vec<String>> {
         let mut languages = Languages::of(("(faults)", "a line of `--faults`"), &Numbers::new(seed));
-        let (mut all, mut wrong) = (Vec::new(), Vec::new());
+        let (mut all, mut lowered, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
         for (number, line) in (1..).zip(self.text.lines()) {
             let (site, text) = site_of(line);
             let before = line.len() - text.len();
@@ -118,18 +141,37 @@ impl FaultScript {
                 let judged = planned.first().map_or(Ok(()), |first| known.judge(first));
                 judged.map_err(|fault| placed(line, &planned, fault))?;
                 let judged = planned.first().map_or(Ok(()), |first| known.judge_line(text, first));
-                judged.map_err(|fault| fault.moved(before))?;
-                Ok(planned)
+                Ok((planned, judged.map_err(|fault| fault.moved(before))))
             });
-            match planned {
-                Ok(planned) => all.extend(planned),
-                Err(fault) => {
-                    let column = line.get(..fault.bytes.start).map_or(1, |before| before.chars().count() + 1);
-                    wrong.push(format!("error: {}:{number}:{column}: {}\n", self.path, shown(line, &fault)));
-                }
+            let (planned, fault) = match planned {
+                Ok((planned, judged)) => (planned, judged.err()),
+                Err(fault) => (Vec::new(), Some(fault)),
+            };
+            all.extend(planned);
+            let Some(fault) = fault else { continue };
+            let level = fault.code.and_then(|code| known.level(code)).unwrap_or(SeverityLevel::Set(Severity::Error));
+            let text = self.said(number, line, level, &fault);
+            match level {
+                SeverityLevel::Set(Severity::Error) => wrong.push(text),
+                SeverityLevel::Set(_) => lowered.push(text),
+                SeverityLevel::Allow => {}
             }
         }
-        if wrong.is_empty() { Ok(all) } else { Err(wrong) }
+        if wrong.is_empty() { Ok(Planned { events: all, lowered }) } else { Err(wrong) }
+    }
+
+    /// A fault of a line, as people read it.
+    fn said(&self, number: usize, line: &str, level: SeverityLevel, fault: &LineFault) -> String {
+        let column = line.get(..fault.bytes.start).map_or(1, |before| before.chars().count() + 1);
+        let place = format!("{}:{number}:{column}", self.path);
+        let Some(code) = fault.code else { return format!("{}: {place}: {}\n", level.name(), shown(line, fault)) };
+        let anyway = match level {
+            SeverityLevel::Set(Severity::Error) => {
+                format!("    = help: to run it in spite of that, add `--severity {code}=warning`\n")
+            }
+            _ => String::new(),
+        };
+        format!("{}[{code}]: {place}: {}\n{anyway}", level.name(), shown(line, fault))
     }
 }
 

@@ -252,8 +252,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut faults = Vec::new();
     if let Some(path) = &arguments.faults {
         let Some(script) = FaultScript::read(path) else { return Exit::WrongInput };
-        match script.events(&Known::of(&assembly), arguments.seed) {
-            Ok(events) => faults = events,
+        match script.events(&Known::of(&assembly, &arguments.fleet.severities), arguments.seed) {
+            Ok(planned) => {
+                if !arguments.quiet {
+                    planned.lowered.iter().for_each(|one| eprint(one));
+                }
+                faults = planned.events;
+            }
             Err(wrong) => {
                 report_wrong(&wrong);
                 return Exit::WrongInput;

@@ -67,7 +67,7 @@ pub(crate) struct SimulateArguments {
     pub(crate) faults: Option<PathBuf>,
 
     /// End each run after this time of its own (a bare number is milliseconds; units us, ms, s, min, h)
-    #[arg(long = "for", value_name = "DURATION", default_value = "1h", allow_hyphen_values = true, value_parser = duration)]
+    #[arg(long = "for", value_name = "DURATION", default_value = "1h", allow_hyphen_values = true, value_parser = limit)]
     pub(crate) limit: Duration,
 
     /// The number of processes; without it, one for each core
@@ -182,6 +182,14 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> Exit {
     if tables.iter().all(Table::is_clean) { Exit::Done } else { Exit::Failed }
 }
 
+/// The time of a run, in which something can happen.
+fn limit(text: &str) -> Result<Duration, String> {
+    match duration(text)? {
+        Duration::ZERO => Err("nothing happens in no time: write a longer one, such as `10min`".to_owned()),
+        limit => Ok(limit),
+    }
+}
+
 /// What each process runs of a fleet. Mistakes are shown.
 fn simulation(arguments: &SimulateArguments, fleet: &FleetArguments) -> Result<Simulation, Exit> {
     let compilation = compiled(fleet, |project, classes| project.to_start().compile(classes))?;
@@ -197,17 +205,21 @@ fn simulation(arguments: &SimulateArguments, fleet: &FleetArguments) -> Result<S
     if !has_components(&assembly, "simulate") {
         return Err(Exit::WrongInput);
     }
-    let known = Known::of(&assembly);
+    let known = Known::of(&assembly, &fleet.severities);
     let script = match &arguments.faults {
         Some(path) => Some(FaultScript::read(path).ok_or(Exit::WrongInput)?),
         None => None,
     };
-    if let Some(Err(wrong)) = script.as_ref().map(|script| script.events(&known, arguments.first)) {
-        if arguments.other().is_some() {
-            eprint(&format!("in the fleet of {}:\n", named(fleet)));
+    match script.as_ref().map(|script| script.events(&known, arguments.first)) {
+        Some(Err(wrong)) => {
+            if arguments.other().is_some() {
+                eprint(&format!("in the fleet of {}:\n", named(fleet)));
+            }
+            report_wrong(&wrong);
+            return Err(Exit::WrongInput);
         }
-        report_wrong(&wrong);
-        return Err(Exit::WrongInput);
+        Some(Ok(planned)) if arguments.worker.is_none() => planned.lowered.iter().for_each(|one| eprint(one)),
+        _ => {}
     }
     let is_measured = arguments.other().is_some();
     Ok(Simulation { assembly, known, script, limit: arguments.limit, first: arguments.first, is_measured })

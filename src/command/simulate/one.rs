@@ -82,7 +82,7 @@ impl Simulation {
     /// The events of the script with this seed.
     pub(super) fn events(&self, seed: u64) -> Result<Vec<PlannedEvent>, String> {
         let events = self.script.as_ref().map(|script| script.events(&self.known, seed));
-        events.unwrap_or_else(|| Ok(Vec::new())).map_err(|wrong| wrong.concat())
+        events.map_or(Ok(Vec::new()), |planned| planned.map(|planned| planned.events)).map_err(|wrong| wrong.concat())
     }
 
     /// Runs a seed, some of them twice.

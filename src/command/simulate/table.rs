@@ -189,6 +189,10 @@ fn replay(arguments: &SimulateArguments, fleet: &FleetArguments, result: &SeedRe
     words.extend(
         fleet.plugins.plugins.iter().flat_map(|one| ["--plugin".to_owned(), quoted(one.display().to_string())]),
     );
+    words.extend(fleet.severities.iter().flat_map(|one| ["--severity".to_owned(), quoted(one.clone())]));
+    if fleet.allow_outside {
+        words.push("--allow-outside".to_owned());
+    }
     let seed = result.seed.to_string();
     match runs_twice {
         true => words.extend(["--seeds", "1", "--first", &seed].map(str::to_owned)),

@@ -447,6 +447,7 @@ fn a_rule_finds_the_same_behind_the_boundary() {
         declaration: Busy::DECLARATION,
         extends: vec!["{}", "{1}"],
         publishes: vec!["A", "B"],
+        subscribes: Vec::new(),
         loops: vec!["test.Dimmer"],
         takes: Vec::new(),
     };

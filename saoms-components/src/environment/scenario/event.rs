@@ -90,7 +90,7 @@ fn of_fleet(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
     Ok(EventSpec::Raised(call.to_string().into()))
 }
 
-fn text_fault(LineFault { bytes, message, instead, help }: LineFault) -> TextFault {
+fn text_fault(LineFault { bytes, message, instead, help, .. }: LineFault) -> TextFault {
     TextFault { bytes, message, instead, help }
 }
 

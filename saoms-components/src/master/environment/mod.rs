@@ -315,10 +315,12 @@ impl MasterEnvironment {
             } else {
                 match fault.kind {
                     FaultKind::Breakdown => {
+                        context.count("faults.applied.breakdown", i64::from(is_alone));
                         self.knowledge.open.break_down(fault.robot, context.now());
                         self.knowledge.crew.remove(fault.robot);
                     }
                     FaultKind::Gone => {
+                        context.count("faults.applied.gone", i64::from(is_alone));
                         let header = Header { sent: context.due(), ..header };
                         self.knowledge.take_away(fault, header);
                     }

@@ -11,7 +11,7 @@ use crate::robot::hardware_client::Reply;
 use crate::robot::{ASSISTANCE, HEARD, RobotKnowledge};
 use crate::zone::{MOST_AHEAD, Wish};
 
-/// Number of executions after which a robot repeats its state.
+/// Number of executions after which a robot repeats its state for the first time.
 const REPEAT_STATE: u64 = 50;
 
 /// Maximum number of blocks ahead that a robot needs because zones answer late.
@@ -127,8 +127,8 @@ impl RobotKnowledge {
         zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0, aside: None })
     }
 
-    /// Repeats where the robot is and what it does from time to time: on a network where updates get lost, others may
-    /// know an older state.
+    /// Repeats where the robot is and what it does, each time after twice as long while that stays the same: on a network
+    /// where updates get lost, others may know an older state.
     ///
     /// # Errors
     /// The messages cannot be sent.
@@ -143,10 +143,7 @@ impl RobotKnowledge {
         let robot = self.robot(!(self.variables.critical || self.shut_down));
         let Some(zones) = &mut self.zones else { return Ok(()) };
         zones.repeat_presence(context)?;
-        if let Some(positions) = &zones.positions {
-            context.send(positions, position)?;
-        }
-        zones.robots.as_ref().map_or(Ok(()), |robots| context.send(robots, robot))
+        zones.repeat_state(position, robot, context)
     }
 
     /// Releases blocks ahead that do not lead where the robot wants to go now.

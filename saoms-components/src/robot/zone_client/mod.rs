@@ -45,11 +45,14 @@ pub(crate) struct ZoneClient {
     said_lost: Option<bool>,
     /// Its charger, as it said last.
     said_charger: Block,
-    /// Number of times when a repetition of where it is was due.
+    /// Number of times when a repetition of where it is was due, since it last changed whether it can move.
     due: u32,
     /// For repetitions of what loops said; `None` where the robot has no loop that says it.
     pub(super) positions: Option<Publisher<Position>>,
     pub(super) robots: Option<Publisher<RobotList>>,
+    /// What the robot said of itself when a repetition was due last, and how often it was due since that changed.
+    said: Option<(Position, RobotList)>,
+    state_due: u32,
     /// Zones and the components that speak for them.
     validator: MessageValidator,
     /// Number of executions since the last request.
@@ -137,6 +140,8 @@ impl ZoneClient {
             due: 0,
             positions: None,
             robots: None,
+            said: None,
+            state_due: 0,
             validator: MessageValidator::default(),
             silent: 0,
             goal: None,
@@ -426,17 +431,40 @@ impl ZoneClient {
         Ok(())
     }
 
-    /// Repeats where the robot is: each time if it cannot move any more or could not some time, else after twice as
-    /// many times as before, since no zone confirms it.
+    /// Repeats where the robot is, after twice as many times as before, since no zone confirms it.
     ///
     /// # Errors
     /// The message cannot be sent.
     pub(crate) fn repeat_presence(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.due = self.due.saturating_add(1);
-        if self.said_lost.is_none() && !self.due.is_power_of_two() {
-            return Ok(());
+        match self.due.is_power_of_two() {
+            true => self.tell_presence(context, self.said_lost.unwrap_or(false)),
+            false => Ok(()),
         }
-        self.tell_presence(context, self.said_lost.unwrap_or(false))
+    }
+
+    /// Repeats the messages of the robot's loops about itself, after twice as many times as before unless they change.
+    ///
+    /// # Errors
+    /// The messages cannot be sent.
+    pub(crate) fn repeat_state(
+        &mut self,
+        position: Position,
+        robot: RobotList,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let said = (position, robot);
+        if self.said.as_ref() != Some(&said) {
+            self.state_due = 0;
+        }
+        self.state_due = self.state_due.saturating_add(1);
+        if self.state_due.is_power_of_two() {
+            let (position, robot) = said.clone();
+            self.positions.as_ref().map_or(Ok(()), |positions| context.send(positions, position))?;
+            self.robots.as_ref().map_or(Ok(()), |robots| context.send(robots, robot))?;
+        }
+        self.said = Some(said);
+        Ok(())
     }
 
     /// Says where the robot is, to all zones.
@@ -446,6 +474,9 @@ impl ZoneClient {
     fn tell_presence(&mut self, context: &mut Context<'_>, is_lost: bool) -> Result<(), Failure> {
         let Some(passage) = &self.passage else { return Ok(()) };
         if is_lost || self.said_lost.is_some() {
+            if self.said_lost != Some(is_lost) {
+                self.due = 0;
+            }
             self.said_lost = Some(is_lost);
         }
         let block = passage.held().first().map_or(Block::default(), |held| held.step.block);

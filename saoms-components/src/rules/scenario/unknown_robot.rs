@@ -77,7 +77,7 @@ pub(crate) fn judge_robot(fleet: &FleetView<'_>, line: &Line, text: &str) -> Res
     let finding = check_name(fleet, &names, &written, Severity::Error, &mut Budget::default());
     let Some(finding) = finding.filter(|one| one.own_severity() == Some(Severity::Error)) else { return Ok(()) };
     let (instead, help) = (finding.replacement().map(str::to_owned), finding.helps().first().cloned());
-    Err(LineFault { bytes: robot.bytes, message: finding.message().to_owned(), instead, help })
+    Err(LineFault { bytes: robot.bytes, message: finding.message().to_owned(), instead, help, code: None })
 }
 
 /// The robot that a line is about, or numbers of which it draws one.

@@ -176,11 +176,13 @@ fn without_grants(fleet: &FleetView<'_>) -> Vec<Finding> {
     for (index, component) in components.iter().enumerate() {
         let publishes = |topic: &str| component.class.publishes.contains(&topic);
         let drives = publishes(POSITION.name()) || publishes(ROBOT_LIST.name());
-        if !drives || publishes(GRANT_REQUEST.name()) {
+        let (asks, hears) = (publishes(GRANT_REQUEST.name()), component.class.subscribes.contains(&GRANT.name()));
+        if !drives || asks && hears {
             continue;
         }
         let Some(zone) = zone_of(index) else { continue };
-        let message = format!("`{}` is a robot that asks no zone for grants", component.path);
+        let fault = if asks { "hears no grants of its zone" } else { "asks no zone for grants" };
+        let message = format!("`{}` is a robot that {fault}", component.path);
         findings.push(
             Finding::new(Place::component(index), message).label(Place::component(zone), "a zone of its site").help(
                 "let its class extend `saoms.Robot`, or publish `GRANTREQUESTTOPIC` and read `GRANTTOPIC` as \

@@ -257,10 +257,13 @@ impl Body {
                 failure
             });
         }
-        if result.is_ok() && self.part.lasting.saves && matches!(job, Job::Execute | Job::React) {
-            result = self.save_execution();
+        if result.is_ok() && matches!(job, Job::Execute | Job::React) {
+            self.part.lasting.note_heard();
+            if self.part.lasting.saves {
+                result = self.save();
+            }
         }
-        if result.is_ok() || !self.part.lasting.hears_again() {
+        if result.is_ok() || !self.part.lasting.hears_again(!self.part.stored.entries().is_empty()) {
             match job {
                 Job::Execute => self.part.collection.filled.clear(&mut self.inboxes),
                 Job::React => self.reactions.iter_mut().for_each(Vec::clear),

@@ -71,9 +71,16 @@ impl Lasting {
         self.counted.clear();
     }
 
-    /// True if the events of an execution that failed are heard again.
-    pub(super) fn hears_again(&self) -> bool {
-        self.saves && self.saved.is_some() && !self.hears_unread
+    /// True if the events of an execution that failed are heard again: by an instance that goes on from a state that
+    /// was saved, or from bytes that were kept.
+    pub(super) fn hears_again(&self, keeps: bool) -> bool {
+        (keeps || self.saves && self.saved.is_some()) && !self.hears_unread
+    }
+
+    /// Notes that an execution has ended well, in which all that it heard was heard.
+    #[inline]
+    pub(super) fn note_heard(&mut self) {
+        self.hears_unread = false;
     }
 
     /// Notes that the state may have changed other than by an execution.
@@ -131,12 +138,6 @@ impl Body {
     #[inline]
     pub(super) fn save_touched(&mut self) -> Result<(), Failure> {
         if self.part.lasting.touched { self.save() } else { Ok(()) }
-    }
-
-    /// Saves the state after an execution, in which all that it heard was heard.
-    pub(super) fn save_execution(&mut self) -> Result<(), Failure> {
-        self.part.lasting.hears_unread = false;
-        self.save()
     }
 
     /// Goes on from what the instance before had saved. A state that cannot be restored is forgotten. An instance that

@@ -346,6 +346,7 @@ mod tests {
             message: "found `lugäge`".to_owned(),
             instead: Some("luggage".to_owned()),
             help: Some("look".to_owned()),
+            code: None,
         };
         let expected =
             "found `lugäge`; did you mean `luggage`?\n    at 6s lugäge [2J (3,1)\n          ^^^^^^\n    = help: look";

@@ -162,6 +162,27 @@ fn faults_of_robots_that_do_not_exist_are_told_and_counted() {
     assert_eq!(report["faults"]["ignored"], 2, "{report}");
 }
 
+/// As in a scenario (S5024).
+#[test]
+fn faults_of_messages_are_refused_where_robots_rest_on_positions() {
+    let folder = empty_folder("strain-peers");
+    fs::write(folder.join("hall.composite"), hall("at 1s luggage (3,1) to (3,9)", "")).unwrap();
+    fs::write(folder.join("faults.txt"), "at 1s for 40s reorder 10 % by 200ms\nat 2s for 1s lose 5 % on ETOPIC\n")
+        .unwrap();
+    let output = saoms_in(&folder, &["run", "hall.composite", "--virtual", "--faults", "faults.txt"]);
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{printed}");
+    let found = "faults.txt:1:7: `Robot2` may hear too late where `Robot1` is, and collide with it";
+    assert!(printed.contains(&format!("error[S5024]: {found}")), "{printed}");
+    assert!(printed.contains("add `--severity S5024=warning`"), "{printed}");
+    assert!(!printed.contains("faults.txt:2"), "{printed}");
+    let arguments = ["run", "hall.composite", "--virtual", "--faults", "faults.txt", "--severity"];
+    let output = saoms_in(&folder, &[&arguments[..], &["S5024=warning"]].concat());
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{printed}");
+    assert!(printed.contains(&format!("warning[S5024]: {found}")), "{printed}");
+}
+
 #[test]
 fn a_fault_that_means_nothing_is_refused_at_its_place_before_anything_starts() {
     let folder = empty_folder("strain-refused");

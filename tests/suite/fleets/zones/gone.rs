@@ -107,3 +107,26 @@ fn robots_that_fail_again_and_again_keep_their_blocks_however_late_news_are() {
         assert_eq!((run.count("collisions.vertex"), run.count("collisions.swap")), (0, 0), "{seed}: {}", run.log());
     }
 }
+
+/// Whoever is gone does not say so again: the event is not lost with the execution that hears it.
+#[test]
+fn a_zone_that_fails_as_it_hears_that_a_robot_is_gone_hears_it_again() {
+    let map = "
+        @..@@@@@@@
+        ..........
+    ";
+    let world = [("map", map.to_owned()), ("moveTime", "300ms".to_owned())];
+    let robots = robot(1, 2, 0) + &robot(2, 1, 0);
+    for fault in ["crash Zone* restart 200ms", "crash Zone1 restart 200ms", "crash Zone2 restart 1s"] {
+        for millis in (4600..4900).step_by(20) {
+            let scenario = format!(
+                "at 1s luggage (4,1) to (8,1)
+                at {millis}ms gone Robot1
+                at {millis}ms {fault}
+                at 10s luggage (3,1) to (8,1)"
+            );
+            let run = site(&world, &zones(2, 5), &robots, &scenario).run(1, Duration::from_secs(40));
+            assert_eq!(delivered(&run), 2, "{fault}, gone at {millis} ms: {}", run.log());
+        }
+    }
+}

@@ -9,7 +9,7 @@ mod words;
 use std::time::Duration;
 
 use saoms_api::{Class, Component, Failure};
-use saoms_components::messages::POSITION;
+use saoms_components::messages::{GRANT_REQUEST, POSITION};
 use saoms_testkit::{Fleet, Run};
 
 const HOUR: Duration = Duration::from_secs(3600);
@@ -235,23 +235,39 @@ impl Component for Stroller {
     }
 }
 
+/// Asks its zone, and does not hear what it says.
+#[derive(Class)]
+#[class(name = "test.Hothead", periodic, publishes(POSITION, GRANT_REQUEST))]
+struct Hothead;
+
+impl Component for Hothead {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Hothead)
+    }
+}
+
 #[test]
-fn a_robot_of_a_class_that_asks_for_no_grants_is_refused() {
-    let fleet = |zones: &str| {
+fn a_robot_of_a_class_that_drives_without_grants_is_refused() {
+    let fleet = |class: &str, zones: &str| {
         Fleet::of_text(format!(
             r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
             <component name="World"><implementation.rust class="saoms.World"/>
             <property name="ID">World</property><property name="period">100</property></component>
             {zones}
-            <component name="Stroller"><implementation.rust class="test.Stroller"/>
-            <property name="ID">Stroller</property><property name="period">100</property></component></composite>"#
+            <component name="Robot"><implementation.rust class="test.{class}"/>
+            <property name="ID">Robot</property><property name="period">100</property></component></composite>"#
         ))
     };
     let zone = r#"<component name="Zone"><implementation.rust class="saoms.Zone"/>
         <property name="ID">Zone</property><property name="period">100</property>
         <reference name="world" target="World"/></component>"#;
-    let found = fleet(zone).diagnostics();
-    assert!(found.contains("error S5023") && found.contains("`Stroller` is a robot that asks no zone"), "{found}");
-    let without = fleet("").diagnostics();
-    assert!(!without.contains("S5023"), "{without}");
+    for (class, fault) in [("Stroller", "asks no zone for grants"), ("Hothead", "hears no grants of its zone")] {
+        let found = fleet(class, zone).diagnostics();
+        let expected = format!("`Robot` is a robot that {fault}");
+        assert!(found.contains("error S5023") && found.contains(&expected), "{found}");
+        let without = fleet(class, "").diagnostics();
+        assert!(!without.contains("S5023"), "{without}");
+    }
 }
