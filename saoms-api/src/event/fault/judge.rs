@@ -122,7 +122,12 @@ fn near<'n>(fault: LineFault, name: &str, known: impl Iterator<Item = &'n str> +
     match nearest(name, known.clone()) {
         Some(meant) => fault.instead(meant),
         None => {
-            let listed: Vec<String> = known.take(8).map(|one| format!("`{one}`")).collect();
+            let mut listed: Vec<String> = Vec::new();
+            for one in known.map(|one| format!("`{one}`")) {
+                if listed.len() < 8 && !listed.contains(&one) {
+                    listed.push(one);
+                }
+            }
             match listed.is_empty() {
                 true => fault,
                 false => fault.help(format!("it has {}", listed.join(", "))),
