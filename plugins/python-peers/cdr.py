@@ -3,7 +3,7 @@ import json
 import struct
 
 FORMATS = {"bool": "?", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I",
-           "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
+           "int64": "q", "uint64": "Q", "float32": "f", "float64": "d", "time": "Q"}
 
 
 def message(**fields):

@@ -27,7 +27,7 @@
         {"name": "in_charge", "type": "bool"}, {"name": "asleep", "type": "bool"}, {"name": "charger", "type":) \
     BLOCK JSON(}, {"name": "period", "type": "uint64"}, {"name": "block", "type":) BLOCK      \
     JSON(}, {"name": "policy", "type": {"enumeration": "uint8", "values": {"SAFE": 0, "CLASSIC": 1}}},  \
-        {"name": "began", "type": {"optional": "uint64"}}]})
+        {"name": "began", "type": {"optional": "time"}}]})
 
 #define EVENT_LUGGAGE                                                                                       \
     JSON({"name": "EventLuggage", "place": "from", "fields": [{"name": "robot", "type": "uint32"},                           \

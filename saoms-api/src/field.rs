@@ -13,6 +13,7 @@ use crate::{Cause, Time, Value};
 /// | [`Bounded<String, 10>`](crate::Bounded), [`Bounded<Vec<T>, 10>`](crate::Bounded) | `string<=10`, `T[<=10]` |
 /// | `Option<T>` | `T[<=1]` |
 /// | [`builtin_interfaces::Time`](crate::builtin_interfaces::Time), [`builtin_interfaces::Duration`](crate::builtin_interfaces::Duration) | the same |
+/// | [`Time`] | `uint64`; a program of another machine gets it as a time of its own run |
 /// | a struct with `#[derive(Message)]` or `#[derive(Field)]` | a nested message |
 /// | an enum without data with `#[derive(Field)]` | its integer, with constants |
 ///
@@ -178,12 +179,11 @@ impl Field for bool {
     }
 }
 
-/// Numbers of their own kind, for state that a component [saves](crate::Component::save): nanoseconds since the start
-/// of the run, and the number of a record in its journal.
+/// Numbers of their own kind: a time in nanoseconds, and the number of a record in the journal of the run.
 macro_rules! numbers_of_a_run {
-    ($($type:ty: $number:expr, $made:expr);* $(;)?) => {
+    ($($type:ty: $name:expr, $number:expr, $made:expr);* $(;)?) => {
         $(impl Field for $type {
-            const TYPE: ConstText = <u64 as Field>::TYPE;
+            const TYPE: ConstText = $name;
             const LEAST_SIZE: usize = <u64 as Field>::LEAST_SIZE;
 
             fn write(&self, writer: &mut Writer) {
@@ -199,8 +199,8 @@ macro_rules! numbers_of_a_run {
 }
 
 numbers_of_a_run! {
-    Time: |time| time.as_nanos(), Time::from_nanos;
-    Cause: |cause| cause.0, Cause;
+    Time: ConstText::Plain("\"time\""), |time| time.as_nanos(), Time::from_nanos;
+    Cause: <u64 as Field>::TYPE, |cause| cause.0, Cause;
 }
 
 impl Field for String {

@@ -93,7 +93,7 @@ fn field_type(value: &Value) -> FieldType {
         "uint8" => bounds(0, u8::MAX.into()),
         "uint16" => bounds(0, u16::MAX.into()),
         "uint32" => bounds(0, u32::MAX.into()),
-        "uint64" => bounds(0, u64::MAX.into()),
+        "uint64" | "time" => bounds(0, u64::MAX.into()),
         _ => bounds(i64::MIN.into(), i64::MAX.into()),
     };
     FieldType::Scalar { kind: PropertyKind::Integer, bounds, allowed: Vec::new(), most: None }

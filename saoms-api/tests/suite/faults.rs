@@ -1,6 +1,6 @@
 //! Faults as lines write them.
 
-use saoms_api::event::fault::{FaultCall, FaultSubjects, SubjectTopic};
+use saoms_api::event::fault::{FaultCall, FaultSubjects, SubjectComponent, SubjectTopic};
 use saoms_api::extension::LineFault;
 
 /// The line again, or its fault behind the words that are wrong.
@@ -93,9 +93,14 @@ fn names_have_to_mean_something() {
         writers: ends(writers),
         readers: ends(readers),
     };
-    let components = ["hall/Robot1", "hall/Robot2", "World"].map(|name| (name.to_owned(), true));
+    let component = |path: &str, node: &str| SubjectComponent {
+        path: path.to_owned(),
+        node: node.to_owned(),
+        is_periodic: path != "Broker",
+    };
+    let components = [("hall/Robot1", "gate-a"), ("hall/Robot2", "gate-b"), ("World", "control"), ("Broker", "router")];
     let subjects = FaultSubjects {
-        components: components.into_iter().chain([("Broker".to_owned(), false)]).collect(),
+        components: components.map(|(path, node)| component(path, node)).to_vec(),
         topics: vec![
             topic("POSTOPIC", &["hall/Robot1", "hall/Robot2"], &["hall/Robot1", "hall/Robot2"]),
             topic("AREATOPIC", &["World"], &[]),
@@ -111,6 +116,23 @@ fn names_have_to_mean_something() {
         ("lose 1 % on POS* from Robot1 to hall/*", "right"),
         ("part Robot1 from Robot2", "right"),
         ("crash World", "right"),
+        ("crash @control restart 2s", "right"),
+        ("part @gate-a from @gate-b", "right"),
+        ("lose 1 % from @*", "right"),
+        ("crash @gate-aa", "`@gate-aa`: the fleet has no node `gate-aa`; did you mean `@gate-a`?"),
+        ("crash @floor", "`@floor`: the fleet has no node `floor`; it has `@control`, `@gate-a`, `@gate-b`, `@router`"),
+        (
+            "for 1s stall @router",
+            "`@router`: all components of `@router` are passive: they have no executions; name the component that calls it",
+        ),
+        (
+            "cut @gate-a from @gate-a",
+            "`@gate-a`: no message takes this way, so the fault has no effect; `from` names components that publish a topic, `to` others that read it",
+        ),
+        (
+            "lose 1 % on POSTOPIC from @control",
+            "`@control`: node `control` publishes nothing on `POSTOPIC`; its publishers are `hall/Robot1`, `hall/Robot2`",
+        ),
         ("crash Wrold", "`Wrold`: the fleet has no component `Wrold`; did you mean `World`?"),
         (
             "for 1s stall Broker",
@@ -136,6 +158,12 @@ fn names_have_to_mean_something() {
     ] {
         assert_eq!(judge(line), expected, "{line}");
     }
+    let mut one_program = subjects.clone();
+    one_program.components.iter_mut().for_each(|one| one.node.clear());
+    let line = "crash @floor";
+    let judged = one_program.check(&FaultCall::read(line).unwrap());
+    let expected = "`@floor`: the fleet has no node `floor`; no component has a `saoms:node`";
+    assert_eq!(shown(line, judged.map(|()| "right".to_owned())), expected);
     let unknown = FaultSubjects::default();
     assert_eq!(unknown.check(&FaultCall::read("crash Anything").unwrap()), Ok(()));
 }

@@ -179,7 +179,8 @@ impl RunInvariants for FleetInvariants {
 
     fn fault(&mut self, at: Time, call: &FaultCall) {
         let ends_all = matches!(call.kind, FaultKind::Crash { restart: None })
-            && call.to.iter().any(|name| self.indispensable.iter().any(|component| is_named(&name.text, component)));
+            && (call.names_nodes()
+                || call.to.iter().any(|name| self.indispensable.iter().any(|one| is_named(&name.text, one))));
         match ends_all {
             true => self.tide.rise_until(None),
             false => self.tide.begin(at, call),

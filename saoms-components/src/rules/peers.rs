@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use saoms_api::event::Word;
-use saoms_api::event::fault::{FaultCall, FaultKind, is_named};
+use saoms_api::event::fault::{FaultCall, FaultKind, is_named, names_component};
 use saoms_api::extension::LineFault;
-use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::robots::robots;
@@ -112,8 +112,8 @@ fn pair(fleet: &FleetView<'_>, peers: &[usize], call: &FaultCall) -> Option<(usi
     let topic = |robot: usize| fleet.components()[robot].topic(POSITION.name());
     let is_disturbed = |robot: usize| call.topic.as_ref().is_none_or(|one| is_named(&one.text, topic(robot)));
     let is_one = |names: &[Word], robot: usize| {
-        let path = fleet.components()[robot].path;
-        names.is_empty() || names.iter().any(|name| is_named(&name.text, path))
+        let ComponentView { path, node, .. } = &fleet.components()[robot];
+        names.is_empty() || names.iter().any(|name| names_component(&name.text, path, node))
     };
     let of = |names: &[Word]| -> Vec<usize> {
         peers.iter().copied().filter(|robot| is_disturbed(*robot) && is_one(names, *robot)).collect()

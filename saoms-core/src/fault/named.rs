@@ -1,5 +1,8 @@
 use saoms_api::event::Word;
-use saoms_api::event::fault::is_named;
+use saoms_api::event::fault::{is_named, names_component};
+
+use super::End;
+use crate::bus::TopicId;
 
 /// Which of many numbered things are named by patterns; each is compared once.
 #[derive(Clone, Debug, Default)]
@@ -14,8 +17,17 @@ impl Named {
         Named { patterns: words.into_iter().map(|word| word.text.clone()).collect(), known: Vec::new() }
     }
 
-    /// True if the thing with this number and path is named.
-    pub(super) fn has(&mut self, number: u32, path: &str) -> bool {
+    /// True if this topic is named.
+    pub(super) fn has_topic(&mut self, topic: TopicId, name: &str) -> bool {
+        self.has(topic.number(), |pattern| is_named(pattern, name))
+    }
+
+    /// True if this component is named.
+    pub(super) fn has_end(&mut self, end: End<'_>) -> bool {
+        self.has(end.number, |pattern| names_component(pattern, end.path, end.node))
+    }
+
+    fn has(&mut self, number: u32, is_named: impl Fn(&str) -> bool) -> bool {
         if self.patterns.is_empty() {
             return true;
         }
@@ -24,6 +36,6 @@ impl Named {
             self.known.resize(place + 1, None);
         }
         let patterns = &self.patterns;
-        *self.known[place].get_or_insert_with(|| patterns.iter().any(|pattern| is_named(pattern, path)))
+        *self.known[place].get_or_insert_with(|| patterns.iter().any(|pattern| is_named(pattern)))
     }
 }

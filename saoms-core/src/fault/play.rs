@@ -40,6 +40,8 @@ struct MessageFault {
     topic: Named,
     from: Named,
     to: Named,
+    /// True if it acts between nodes alone.
+    is_between_nodes: bool,
 }
 
 /// A component at an end of a link.
@@ -48,6 +50,8 @@ pub(crate) struct End<'e> {
     pub(crate) number: u32,
     pub(crate) path: &'e str,
     pub(crate) site: &'e str,
+    /// Empty in a fleet without nodes.
+    pub(crate) node: &'e str,
 }
 
 /// A message on a link.
@@ -71,15 +75,14 @@ pub(crate) struct Arrival {
 
 impl MessageFault {
     fn is_on(&mut self, (topic, name): (TopicId, &str)) -> bool {
-        self.topic.has(topic.number(), name)
+        self.topic.has_topic(topic, name)
     }
 
     /// True if it concerns a reader of a topic.
     fn concerns_reader(&mut self, topic: (TopicId, &str), reader: End<'_>) -> bool {
         self.is_on(topic)
             && (self.site.is_empty() || self.site == reader.site)
-            && (self.to.has(reader.number, reader.path)
-                || self.kind == FaultKind::Part && self.from.has(reader.number, reader.path))
+            && (self.to.has_end(reader) || self.kind == FaultKind::Part && self.from.has_end(reader))
     }
 
     fn concerns(&mut self, message: &OnLink<'_>) -> bool {
@@ -87,9 +90,11 @@ impl MessageFault {
         if !self.concerns_reader(topic, to) || !(self.site.is_empty() || self.site == from.site) {
             return false;
         }
-        let is_this_way = self.from.has(from.number, from.path) && self.to.has(to.number, to.path);
-        is_this_way
-            || self.kind == FaultKind::Part && self.to.has(from.number, from.path) && self.from.has(to.number, to.path)
+        if self.is_between_nodes && from.node == to.node {
+            return false;
+        }
+        let is_this_way = self.from.has_end(from) && self.to.has_end(to);
+        is_this_way || self.kind == FaultKind::Part && self.to.has_end(from) && self.from.has_end(to)
     }
 
     fn draws(&mut self, rate: Rate) -> bool {
@@ -144,6 +149,7 @@ impl FaultPlay {
             topic: Named::by(&call.topic),
             from: Named::by(&call.from),
             to: Named::by(&call.to),
+            is_between_nodes: call.names_nodes(),
         });
     }
 

@@ -18,7 +18,7 @@ fn arrivals(faults: &[&str], is_event: bool) -> Vec<Vec<u64>> {
     for fault in faults {
         play.begin_messages(&FaultCall::read(fault).unwrap(), "", 0);
     }
-    let end = |number, path| End { number, path, site: "" };
+    let end = |number, path| End { number, path, site: "", node: if path == "A" { "floor" } else { "traffic" } };
     let on_link = OnLink { topic: (topic, "TALK"), link: topic, is_event, from: end(1, "A"), to: end(2, "B") };
     let mut all = Vec::new();
     for at in (0..10).map(|place| place * 10_000_000) {
@@ -31,7 +31,9 @@ fn arrivals(faults: &[&str], is_event: bool) -> Vec<Vec<u64>> {
 #[test]
 fn a_message_that_nothing_concerns_arrives_at_once() {
     let usual: Vec<Vec<u64>> = (0..10).map(|place| vec![place * 10]).collect();
-    for other in ["lose 100 % on TABLE", "lose 100 % from B", "cut B from C", "lose 0 %", "delay 0s"] {
+    for other in
+        ["lose 100 % on TABLE", "lose 100 % from B", "cut B from C", "lose 0 %", "delay 0s", "cut @floor from @*"]
+    {
         assert_eq!(arrivals(&[other], true), usual, "{other}");
     }
 }
@@ -52,6 +54,8 @@ fn what_is_cut_off_waits_for_the_end_of_it() {
     let cut = arrivals(&["for 35ms cut B from A"], true);
     assert_eq!(cut, [[36], [36], [36], [36], [40], [50], [60], [70], [80], [90]]);
     assert_eq!(arrivals(&["for 35ms part A, C from B"], true), cut);
+    assert_eq!(arrivals(&["for 35ms part @floor from @traf*"], true), cut);
+    assert_eq!(arrivals(&["for 35ms cut @traffic from @*"], true), cut);
     assert!(arrivals(&["cut B from A"], true).iter().all(Vec::is_empty));
     assert_eq!(arrivals(&["for 35ms cut A from B"], true)[0], [0], "the other way is open");
 }

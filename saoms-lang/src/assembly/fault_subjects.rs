@@ -1,6 +1,6 @@
 //! What faults can name in a fleet.
 
-use saoms_api::event::fault::FaultSubjects;
+use saoms_api::event::fault::{FaultSubjects, SubjectComponent};
 
 use super::ComponentSpec;
 
@@ -9,7 +9,8 @@ pub fn fault_subjects<'s>(specs: impl IntoIterator<Item = &'s ComponentSpec>) ->
     let mut subjects = FaultSubjects { is_complete: true, ..FaultSubjects::default() };
     for spec in specs {
         let own = spec.class.declaration();
-        subjects.components.push((spec.path.clone(), own.is_periodic()));
+        let (path, node) = (spec.path.clone(), spec.node.to_string());
+        subjects.components.push(SubjectComponent { path, node, is_periodic: own.is_periodic() });
         let loops = || spec.loops.iter().map(|one| one.class.declaration());
         for declared in own.publishes.iter().chain(loops().flat_map(|one| &one.publishes)) {
             note(&mut subjects.topic(spec.topic(&declared.name).into_owned()).writers, &spec.path);

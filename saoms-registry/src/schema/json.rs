@@ -46,6 +46,7 @@ fn read(kind: &Type, reader: &mut Reader<'_>) -> Result<Value, DecodeError> {
             Scalar::Integer(value) => i64::try_from(value).map_or_else(|_| (value as u64).into(), Value::from),
             Scalar::Float(value) => JsonNumber::from_f64(value).map_or_else(|| value.to_string().into(), Value::Number),
         },
+        Type::Time => read(&Type::Number(Number::Uint64), reader)?,
         Type::String => reader.string()?.into(),
         Type::Enumeration(number, values) => constant(*number, values, reader)?.into(),
         Type::Message(schema) => message(schema, reader)?,
@@ -116,6 +117,7 @@ fn write(kind: &Type, value: &Value, writer: &mut Writer) -> Result<(), SchemaEr
                 writer,
             );
         }
+        Type::Time => write(&Type::Number(Number::Uint64), value, writer)?,
         Type::String => writer.string(value.as_str().ok_or_else(|| wrong(value, "a text"))?),
         Type::Enumeration(number, values) => {
             let found = value.as_str().and_then(|name| values.iter().find(|(known, _)| known == name));

@@ -8,6 +8,7 @@ mod read;
 mod sample;
 #[cfg(test)]
 mod tests;
+mod times;
 
 use std::fmt;
 
@@ -36,6 +37,8 @@ pub struct Schema {
     /// Place of the field that is the block of a message.
     place: Option<usize>,
     fields: Vec<Field>,
+    /// True if it has times of a run, in its nested messages, too.
+    has_times: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +51,8 @@ struct Field {
 enum Type {
     Bool,
     Number(Number),
+    /// Nanoseconds of a run, as a `uint64`.
+    Time,
     String,
     Sequence(Box<Type>),
     Array(Box<Type>, usize),
@@ -200,7 +205,8 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
         let name = &fields[key].name;
         return Err(SchemaError(format!("the key of `{}` is `{name}`, which is {what}", shape.name)));
     }
-    Ok(Schema { fields, key, place, name: shape.name })
+    let has_times = fields.iter().any(|field| field.kind.has_times());
+    Ok(Schema { fields, key, place, has_times, name: shape.name })
 }
 
 /// True if a field is a column and a row.
@@ -219,6 +225,7 @@ fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {
         return match name {
             "bool" => Ok(Type::Bool),
             "string" => Ok(Type::String),
+            "time" => Ok(Type::Time),
             name => Number::of(name).map(Type::Number).ok_or_else(unknown),
         };
     }
@@ -318,6 +325,7 @@ impl Type {
         match self {
             Type::Bool => 1,
             Type::Number(number) | Type::Enumeration(number, _) => number.size(),
+            Type::Time => Number::Uint64.size(),
             Type::String | Type::Sequence(_) | Type::Bounded(..) | Type::Optional(_) => 4,
             Type::Array(element, length) => element.least_size().saturating_mul(*length),
             Type::Message(schema) => {

@@ -32,10 +32,11 @@ pub(super) fn key(schema: &Schema, place: usize, reader: &mut Reader<'_>) -> Opt
     }
 }
 
-fn skip(kind: &Type, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
+pub(super) fn skip(kind: &Type, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
     match kind {
         Type::Bool => boolean(reader).map(drop),
         Type::Number(number) => scalar(*number, reader).map(drop),
+        Type::Time => scalar(Number::Uint64, reader).map(drop),
         Type::String => reader.string().map(drop),
         Type::Enumeration(number, values) => constant(*number, values, reader).map(drop),
         Type::Message(schema) => skip_message(schema, reader),

@@ -23,6 +23,7 @@ fn value(kind: &Type, chance: &mut Chance, writer: &mut Writer) {
     match kind {
         Type::Bool => writer.scalar([u8::from(chance.chance(0.5))]),
         Type::Number(number) => scalar(*number, chance, writer),
+        Type::Time => scalar(Number::Uint64, chance, writer),
         Type::String => text(usize::MAX, chance, writer),
         Type::Enumeration(number, values) => {
             let constant = chance.pick(values).map_or(0, |(_, constant)| *constant);

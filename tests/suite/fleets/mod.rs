@@ -10,6 +10,7 @@ mod expand;
 mod failing;
 mod invariants;
 mod messages;
+mod nodes;
 mod physics;
 mod shifts;
 mod slow;

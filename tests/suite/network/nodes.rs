@@ -140,6 +140,24 @@ fn a_robot_that_crashes_in_one_node_is_replaced_by_one_of_another() {
     }
 }
 
+/// Whether it began after it was gone is told by times of two programs, of which one runs for longer.
+#[test]
+fn a_robot_whose_program_was_killed_is_gone_and_comes_back_in_a_new_one() {
+    let programs = Programs::new();
+    let scenario = "at 1s luggage (1,1) to (1,9)\nat 15s gone Robot1\nat 25s luggage (2,1) to (2,9)";
+    write_fleet(&programs, scenario, &[("gate", "100")]);
+    let others = ["control", "traffic"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    let first = start(&programs, "fleet.composite", "gate", &[]);
+    programs.until(&first, "deposited luggage 1 at");
+    first.kill();
+    programs.until(&others[0], "robot 1 is gone");
+    let second = start(&programs, "fleet.composite", "gate", &[]);
+    programs.until(&second, "deposited luggage 2 at");
+    for program in [&others[0], &others[1], &second] {
+        programs.ends(program, 0);
+    }
+}
+
 #[test]
 fn all_nodes_run_in_one_program_unless_one_is_named() {
     let airport = root().join("composites/airport-nodes.composite");

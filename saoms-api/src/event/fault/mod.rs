@@ -16,8 +16,8 @@ use std::time::Duration;
 use crate::time::format_duration;
 
 use super::Word;
-pub use judge::{FaultSubjects, SubjectTopic};
-pub use name::is_named;
+pub use judge::{FaultSubjects, SubjectComponent, SubjectTopic};
+pub use name::{NODE_SIGN, is_named, names_component};
 pub use rate::Rate;
 
 /// The words with which a fault begins, behind how long it lasts: no event has one of them as its name.
@@ -51,11 +51,19 @@ pub struct FaultCall {
     pub bytes: Range<usize>,
     /// Of a fault of messages, the only topic that it concerns.
     pub topic: Option<Word>,
-    /// Of a fault of messages, the components that send them; without any, all.
+    /// Of a fault of messages, the components that send them; without any, all. Each is named by its path or its node
+    /// ([`names_component`]).
     pub from: Vec<Word>,
     /// Of a fault of messages, the components that read them; without any, all. Otherwise the components that it
     /// concerns.
     pub to: Vec<Word>,
+}
+
+impl FaultCall {
+    /// True if it names a node: a fault of messages acts then between components of different nodes alone.
+    pub fn names_nodes(&self) -> bool {
+        self.from.iter().chain(&self.to).any(|name| name.text.starts_with(NODE_SIGN))
+    }
 }
 
 /// Kinds of faults. Those of messages act on the way from each sender to each reader by itself.

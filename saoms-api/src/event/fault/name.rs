@@ -11,6 +11,24 @@ pub fn is_named(pattern: &str, path: &str) -> bool {
     std::iter::once(0).chain(ends).any(|start| fits(pattern.as_bytes(), &path.as_bytes()[start..]))
 }
 
+/// Begins the name of a node.
+pub const NODE_SIGN: char = '@';
+
+/// True if a component is named: by its path, as [`is_named`] says, or by its node behind `@`.
+///
+/// ```
+/// use saoms_api::event::fault::names_component;
+///
+/// assert!(names_component("Robot*", "hall/Robot2", "floor") && names_component("@floor", "hall/Robot2", "floor"));
+/// assert!(!names_component("@floor", "floor", "traffic") && !names_component("@*", "Robot2", ""));
+/// ```
+pub fn names_component(pattern: &str, path: &str, node: &str) -> bool {
+    match pattern.strip_prefix(NODE_SIGN) {
+        Some(pattern) => !node.is_empty() && fits(pattern.as_bytes(), node.as_bytes()),
+        None => is_named(pattern, path),
+    }
+}
+
 /// In linear memory and without recursion: a star that fits takes one letter more each time the rest does not.
 fn fits(pattern: &[u8], text: &[u8]) -> bool {
     let (mut at, mut letter, mut star) = (0, 0, None);

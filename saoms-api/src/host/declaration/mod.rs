@@ -116,6 +116,7 @@
 //! | type | meaning |
 //! | --- | --- |
 //! | `"bool"`, `"int8"` to `"int64"`, `"uint8"` to `"uint64"`, `"float32"`, `"float64"`, `"string"` | the types of ROS 2 interfaces |
+//! | `"time"` | a time of the run: a `uint64`, in nanoseconds since its start, and since 1970 on a network |
 //! | `{"sequence": type}` | any number of these |
 //! | `{"array": type, "length": 36}` | as many of these |
 //! | `{"bounded": type, "most": 10}` | a string of at most so many bytes, or a sequence of at most so many elements |

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use saoms_api::event::fault::{FaultCall, is_named};
+use saoms_api::event::fault::{FaultCall, names_component};
 use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Cause, Level};
 use saoms_lang::assembly::ComponentSpec;
@@ -15,7 +15,7 @@ use crate::observe::Occurrence;
 use crate::schedule::networks::Networks;
 
 fn end(number: u32, slot: &Slot) -> End<'_> {
-    End { number, path: &slot.name, site: &slot.spec.site }
+    End { number, path: &slot.name, site: &slot.spec.site, node: &slot.spec.node }
 }
 
 /// The same for one of this program or of another node.
@@ -24,7 +24,7 @@ fn any_end<'e>(slots: &'e [Slot], networks: &'e Networks, number: u32) -> Option
         return Some(end(number, slot));
     }
     let (spec, _) = networks.elsewhere.get(number)?;
-    Some(End { number, path: &spec.path, site: &spec.site })
+    Some(End { number, path: &spec.path, site: &spec.site, node: &spec.node })
 }
 
 impl Engine {
@@ -46,7 +46,7 @@ impl Engine {
             slot.is_member()
                 && slot.policy.periodic
                 && (site.is_empty() || slot.spec.site == site)
-                && call.to.iter().any(|word| is_named(&word.text, &slot.name))
+                && call.to.iter().any(|word| names_component(&word.text, &slot.name, &slot.spec.node))
         };
         let named = (0..).zip(&self.slots).filter(|(_, slot)| is_meant(slot)).map(|(number, _)| number);
         self.faults.begin_tasks((call, cause), named, now);
@@ -56,7 +56,8 @@ impl Engine {
     /// Tells of components of other nodes that a fault names: it acts in the program that plays it.
     fn note_faults_elsewhere(&mut self, call: &FaultCall, site: &str, now: u64) {
         let is_meant = |spec: &ComponentSpec| {
-            (site.is_empty() || spec.site == site) && call.to.iter().any(|word| is_named(&word.text, &spec.path))
+            (site.is_empty() || spec.site == site)
+                && call.to.iter().any(|word| names_component(&word.text, &spec.path, &spec.node))
         };
         let mut named = self.networks.elsewhere.specs().map(|(_, spec)| spec).filter(|spec| is_meant(spec));
         let Some(first) = named.next() else { return };

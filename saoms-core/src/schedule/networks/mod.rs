@@ -6,6 +6,7 @@ pub(super) mod elsewhere;
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Header, Level, Time};
@@ -42,6 +43,8 @@ pub(super) struct Networks {
     /// The networks of the components that use each topic.
     topics: HashMap<TopicId, Vec<u8>>,
     pub(super) elsewhere: Elsewhere,
+    /// Wall clock of the start of the run, in nanoseconds since 1970: times are since then on a network.
+    epoch: i64,
     /// The schemas of topics, by the numbers of these.
     schemas: HashMap<TopicId, (u64, Option<Arc<Schema>>)>,
 }
@@ -87,9 +90,11 @@ impl Engine {
         message: &SharedMessage,
     ) {
         let to = message.to().and_then(|to| self.name_of(to));
-        let schema = self.schema_of(topic).0;
+        let epoch = self.networks.epoch;
+        let (schema, known) = self.schema_of(topic);
+        let (schema, message) = (*schema, dated(message, known.as_deref(), epoch));
         let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
-        let (component, message) = (Arc::clone(component), message.clone());
+        let component = Arc::clone(component);
         self.networks.waiting.push((network, FromRun::Message { topic, component, to, is_state, schema, message }));
     }
 
@@ -143,10 +148,24 @@ impl Handle {
     pub fn use_network(&self, url: &str, port: &Arc<Port>, hooks: impl NetworkHooks) -> NetworkedFleet {
         let mut engine = self.shared.lock();
         let network = engine.networks.all.len();
+        let date = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let date = i64::try_from(date.as_nanos()).unwrap_or(i64::MAX);
+        engine.networks.epoch = date.saturating_sub_unsigned(self.shared.clock.now());
         engine.networks.all.push((url.to_owned(), Arc::clone(port)));
         engine.networks.are_done.push(false);
         self.shared.release(engine);
         NetworkedFleet { shared: Arc::clone(&self.shared), network, hooks: Box::new(hooks) }
+    }
+}
+
+/// A message as it leaves the program: with times since 1970, not since the start of the run.
+fn dated(message: &SharedMessage, schema: Option<&Schema>, epoch: i64) -> SharedMessage {
+    let Some(schema) = schema.filter(|schema| schema.has_times()) else { return message.clone() };
+    let mut bytes = message.bytes().to_vec();
+    match schema.move_times(&mut bytes, epoch) {
+        Ok(()) => SharedMessage::from_bytes(message.header(), None, bytes).of(message.key(), message.place()),
+        // It is no message of its topic, and others will say so.
+        Err(_) => message.clone(),
     }
 }
 
@@ -190,9 +209,12 @@ impl Fleet for NetworkedFleet {
                 break;
             }
             let to = (!arrived.to.is_empty()).then(|| engine.numbers.get(arrived.to.as_str()).copied());
-            let Some(FromNetwork { arrived, .. }) = messages.pop_front() else { break };
+            let Some(FromNetwork { mut arrived, .. }) = messages.pop_front() else { break };
             // One that is for a component of another program, or that is no message of the topic, is nothing here.
             if to == Some(None) || schema.check(&arrived.bytes).is_err() {
+                continue;
+            }
+            if schema.move_times(&mut arrived.bytes, engine.networks.epoch.saturating_neg()).is_err() {
                 continue;
             }
             let sender = match arrived.component.starts_with(OUTSIDE_NAME) {

@@ -4,7 +4,7 @@
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use saoms_api::event::fault::FaultSubjects;
+use saoms_api::event::fault::{FaultSubjects, SubjectComponent};
 use saoms_api::event::{Events, receiver};
 use saoms_api::extension::{LineFault, PropertyLanguage, PropertyTexts, RaisedEvent, RaisedFault};
 use saoms_api::host::PropertyValue;
@@ -133,7 +133,8 @@ impl<'f, 'a> Languages<'f, 'a> {
             for declared in &class.subscribes {
                 subjects.topic(on_bus(&declared.name)).readers.push(path.clone());
             }
-            subjects.components.push((path, class.class.declaration().is_periodic()));
+            let (node, is_periodic) = (member.node.to_string(), class.class.declaration().is_periodic());
+            subjects.components.push(SubjectComponent { path, node, is_periodic });
         }
         subjects
     }
