@@ -62,36 +62,70 @@ pub(super) fn library_above(top: usize) -> Option<&'static str> {
     })
 }
 
+/// A line for standard error, which a signal handler can make: without a lock, memory, or more of the stack than it is.
+struct Line {
+    bytes: [u8; 1024],
+    length: usize,
+}
+
+impl Line {
+    const fn new() -> Line {
+        Line { bytes: [0; 1024], length: 0 }
+    }
+
+    fn add(&mut self, text: &str) {
+        let Some(room) = self.bytes.get_mut(self.length..) else { return };
+        let count = text.len().min(room.len());
+        room[..count].copy_from_slice(&text.as_bytes()[..count]);
+        self.length += count;
+    }
+
+    fn write(&self) {
+        crate::output::write_error(&self.bytes[..self.length]);
+    }
+}
+
+/// Bytes of a line that names of libraries may take.
+const OF_LIBRARIES: usize = 768;
+
 /// Writes a line to standard error at once, without a lock or memory.
 pub(super) fn write(parts: &[&str]) {
-    let mut line = [0; 1024];
-    let mut length = 0;
-    for byte in parts.iter().flat_map(|part| part.bytes()).take(line.len()) {
-        line[length] = byte;
-        length += 1;
+    let mut line = Line::new();
+    for part in parts {
+        line.add(part);
     }
-    crate::output::write_error(&line[..length]);
+    line.write();
 }
 
 /// Writes a line about code of any of the libraries, in the same way.
 pub(super) fn write_of_libraries(before: &str, after: &[&str]) {
-    let mut parts = [""; 24];
-    let most = parts.len() - after.len() - 1;
-    let about = [before, "code of library `"].into_iter().chain(libraries_joined()).take(most);
-    let all = about.chain(["` "]).chain(after.iter().copied());
-    parts.iter_mut().zip(all).for_each(|(place, part)| *place = part);
-    write(&parts);
+    let mut line = Line::new();
+    line.add(before);
+    line.add("code of library `");
+    for_each_library(|part| {
+        if line.length + part.len() <= OF_LIBRARIES {
+            line.add(part);
+        }
+    });
+    line.add("` ");
+    for part in after {
+        line.add(part);
+    }
+    line.write();
 }
 
-/// The libraries whose code runs here, with what stands between two of them.
-pub(super) fn libraries_joined<'a>() -> impl Iterator<Item = &'a str> {
+/// Says the libraries whose code runs here, with what stands between two of them. A signal handler may ask.
+pub(super) fn for_each_library(mut say: impl FnMut(&str)) {
     let mut before = "";
-    libraries().flat_map(move |library| {
-        let between = if before.is_empty() { "" } else { "` or `" };
-        let is_new = before != library;
+    for library in libraries() {
+        if library != before {
+            if !before.is_empty() {
+                say("` or `");
+            }
+            say(library);
+        }
         before = library;
-        [between, library].into_iter().filter(move |_| is_new)
-    })
+    }
 }
 
 /// Ends the process at once, whatever stands before `_exit`.

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use saoms_api::host::present::{libraries, library_at};
 
-use super::blame::{Blame, blame, is_program, libraries_joined, write};
+use super::blame::{Blame, blame, for_each_library, is_program, write};
 use super::hardware;
 use super::signals::{UseAs, keep_for, waiting};
 use super::stray::Origin;
@@ -120,7 +120,7 @@ fn tell_of_program(meaning: &str) {
             crate::output::write_error(part.as_bytes());
         };
         write("error: the program crashed, maybe since code of library `");
-        libraries_joined().for_each(write);
+        for_each_library(write);
         ["` damaged or limited its memory: ", meaning, "\n"].into_iter().for_each(write);
     }
 }

@@ -85,7 +85,9 @@ fn look(owner: &'static Owner, function: Function) {
 
 /// The libraries whose code runs here, for a text in quotes.
 pub(crate) fn libraries() -> String {
-    blame::libraries_joined().collect()
+    let mut all = String::new();
+    blame::for_each_library(|part| all.push_str(part));
+    all
 }
 
 /// Looks at what code of libraries has done, before the program writes what it was asked for.

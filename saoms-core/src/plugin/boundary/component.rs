@@ -4,6 +4,7 @@ use std::ptr;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
 use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
+use saoms_api::host::contain::contained;
 use saoms_api::host::present::{Function, Owner, enter, looked_after, subject};
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
 use saoms_api::{CallError, Context, Failure, ReportValue, Saved};
@@ -87,10 +88,13 @@ pub(super) unsafe fn construct(
     let mut instance = ptr::null_mut();
     let _looked = looked_after(owner, Function::Construct);
     let _entered = enter(owner, Function::Construct);
-    // SAFETY: as the caller promises; the rest is lent to this call.
-    let (result, findings) = call_with_findings(|findings, error| unsafe {
-        construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
-    });
+    // An exception of another language ends the program here, where it is known whose it is.
+    let (result, findings) = contained(|| {
+        // SAFETY: as the caller promises; the rest is lent to this call.
+        call_with_findings(|findings, error| unsafe {
+            construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
+        })
+    })?;
     let is_content = findings.is_empty();
     let with_findings = |message: String| -> Failure {
         match findings.into_iter().collect() {
