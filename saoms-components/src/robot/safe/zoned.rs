@@ -127,8 +127,8 @@ impl RobotKnowledge {
         zones.ask(context, Wish { goal: None, charger, rank: 0, standing: Standing::Lost, ahead: 0, aside: None })
     }
 
-    /// Repeats where the robot is and what it does, each time after twice as long while that stays the same: on a network
-    /// where updates get lost, others may know an older state.
+    /// Repeats where the robot is and what it does, each time after twice as long while that stays the same: on a
+    /// network where updates get lost, others may know an older state.
     ///
     /// # Errors
     /// The messages cannot be sent.
