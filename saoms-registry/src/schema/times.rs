@@ -11,13 +11,14 @@ impl Schema {
         self.has_times
     }
 
-    /// Moves all times of a run in the bytes of a message, by nanoseconds: from the start of a run to 1970, or back. What
-    /// would be before the start becomes the start.
+    /// Moves all times of a run in the bytes of a message, by nanoseconds: from the start of a run to 1970, or back.
+    /// What would be before the start becomes the start.
     ///
     /// ```
     /// use saoms_registry::schema::Schema;
     ///
-    /// let schema = Schema::parse(r#"{"name":"Began","fields":[{"name":"robot","type":"uint8"},{"name":"at","type":"time"}]}"#)?;
+    /// let began = r#"{"name":"Began","fields":[{"name":"robot","type":"uint8"},{"name":"at","type":"time"}]}"#;
+    /// let schema = Schema::parse(began)?;
     /// let mut bytes = schema.encode(&serde_json::json!({"robot": 7, "at": 1_000}))?;
     /// schema.move_times(&mut bytes, 500)?;
     /// assert_eq!(schema.decode(&bytes)?.to_string(), r#"{"at":1500,"robot":7}"#);

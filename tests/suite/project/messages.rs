@@ -22,8 +22,9 @@ The topics of the classes that ship, under their names before any `topicRename`,
 topic keeps the newest message of each publisher, or of each key; an event topic loses none. A plugin in Rust has the same
 messages from `saoms_components::messages`; another one declares them with these names and types. `saoms check --wiring`
 shows the topics of a fleet. *Sender* is the field with the number of the component that sends the message: a message from
-outside with the number of a component of the fleet is refused. This page is generated from the declarations of the
-classes and the docs of the fields.
+outside with the number of a component of the fleet is refused. A `time` is a `uint64`: nanoseconds since the start of the
+run, and since 1970 between programs. This page is generated from the declarations of the classes and the docs of the
+fields.
 ";
 
 /// A topic, and the classes and loops at its ends.
