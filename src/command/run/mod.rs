@@ -255,7 +255,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         match script.events(&Known::of(&assembly, &arguments.fleet.severities), arguments.seed) {
             Ok(planned) => {
                 if !arguments.quiet {
-                    planned.lowered.iter().for_each(|one| eprint(one));
+                    eprint(&planned.lowered.concat());
                 }
                 faults = planned.events;
             }

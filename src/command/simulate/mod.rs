@@ -218,7 +218,7 @@ fn simulation(arguments: &SimulateArguments, fleet: &FleetArguments) -> Result<S
             report_wrong(&wrong);
             return Err(Exit::WrongInput);
         }
-        Some(Ok(planned)) if arguments.worker.is_none() => planned.lowered.iter().for_each(|one| eprint(one)),
+        Some(Ok(planned)) if arguments.worker.is_none() => eprint(&planned.lowered.concat()),
         _ => {}
     }
     let is_measured = arguments.other().is_some();
