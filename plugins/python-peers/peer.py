@@ -15,9 +15,12 @@ INTERVAL = 0.2  # seconds between two signs of life
 SILENT, OPEN, DONE = range(3)  # votes
 
 ENCLOSED = message(size="uint32", to="string", key="uint64", has_key="bool", sent="uint64", cause="uint64")
+IN_CELL = message(x="int32", y="int32", before="uint64", has_left="bool")
 ENVELOPE = message(program="uint64", component="string", schema="uint64", number="uint64",
-                   messages={"sequence": ENCLOSED})
-SENDS = message(topic="string", is_state="bool", last="uint64", oldest="uint64")
+                   messages={"sequence": ENCLOSED}, cells={"sequence": IN_CELL})
+CHANGE = message(x="int32", y="int32", last="uint64")
+SENDS = message(topic="string", is_state="bool", last="uint64", oldest="uint64", by_cells="bool", since="uint64",
+                cells={"sequence": CHANGE})
 READS = message(topic="string")
 RECEIVED = message(program="uint64", topic="string", next="uint64")
 WELCOME = message(reader="uint64", topic="string", first="uint64")
@@ -91,7 +94,7 @@ class Peer:
         self.heard, self.due = queue.Queue(), 0.0
         self.session, self.own = join(url), f"{self.program:x}"
         keys = ["alive/*", f"ask/{self.own}", f"covered/{self.own}", f"again/{self.own}/*"]
-        for key in keys + [f"topic/{topic}/*" for topic in reads]:
+        for key in keys + [f"topic/{topic}/**" for topic in reads]:
             self.session.declare_subscriber("saoms/1/" + key, self.heard.put)
 
     def send(self, topic, value):
@@ -99,7 +102,7 @@ class Peer:
         key, payload = value[schema["key"]] if "key" in schema else None, encode(schema, value)
         enclosed = dict(size=len(payload), to="", key=key or 0, has_key=key is not None, sent=time.time_ns(), cause=0)
         envelope = dict(program=self.program, component=self.name, schema=schema_number, number=outgoing.last + 1,
-                        messages=[enclosed])
+                        messages=[enclosed], cells=[])
         outgoing.keep(key, payload, encode(ENVELOPE, envelope))
         self.put(f"topic/{topic}/{self.name}", *outgoing.kept[outgoing.last])
 
@@ -142,7 +145,8 @@ class Peer:
 
     def say_alive(self, leaves=False):
         self.sign += 1
-        sends = [dict(topic=topic, is_state=one.is_state, last=one.last, oldest=min([one.last + 1, *one.kept]))
+        sends = [dict(topic=topic, is_state=one.is_state, last=one.last, oldest=min([one.last + 1, *one.kept]),
+                      by_cells=False, since=0, cells=[])
                  for topic, one in self.outgoing.items()]
         for one in sends:
             one["oldest"] = 1 if one["is_state"] else one["oldest"]

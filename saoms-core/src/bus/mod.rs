@@ -12,6 +12,7 @@
 
 mod events;
 mod hash;
+mod interest;
 mod links;
 mod regions;
 #[cfg(test)]
@@ -30,6 +31,7 @@ use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 use saoms_api::{Departed, Region};
 
 pub use links::Link;
+pub use regions::{Cell, cell_of};
 pub(crate) use state::MOST_KEYS;
 use topic::{BusTopic, ReadPosition};
 
@@ -171,13 +173,19 @@ impl Bus {
         let id = self.user(name, declared, by)?;
         let topic = &mut self.topics[id.0 as usize];
         let reader = topic.reader(queue.into());
+        topic.reading += 1;
         self.readers = self.readers.wrapping_add(1);
         Ok(TopicReader { topic: id, number: self.readers, reader, triggers: None })
     }
 
     /// Takes a reader off its topic. Returns the number of messages that it lost since it last collected.
     pub fn unsubscribe(&mut self, subscription: TopicReader) -> u64 {
-        self.topics[subscription.topic.0 as usize].lose_user();
+        let topic = &mut self.topics[subscription.topic.0 as usize];
+        topic.lose_user();
+        topic.reading -= 1;
+        if let Some(interest) = &mut topic.interest {
+            interest.remove(subscription.number);
+        }
         let own = self.read_by(&subscription);
         let topic = &mut self.topics[own];
         if let Some(place) = topic.triggers.iter().position(|number| Some(*number) == subscription.triggers) {
@@ -314,6 +322,7 @@ impl Bus {
         if subscription.reader != before {
             topic.readers.moved(subscription.number, subscription.reader);
         }
+        self.set_interest(subscription, region.as_ref());
     }
 
     /// Puts back what the last [`collect`](Bus::collect) put into an inbox. Events stay in the inbox, since their topic

@@ -24,7 +24,8 @@ struct InCell {
     region: Region,
 }
 
-type Cell = (i32, i32);
+/// A cell: its column and row.
+pub type Cell = (i32, i32);
 type Block = (i32, i32);
 
 /// The readers of a topic that have a region.
@@ -63,13 +64,14 @@ struct RegionReader {
     reported: Vec<(u32, Departed)>,
 }
 
-fn cell((x, y): Block) -> Cell {
+/// The cell of a block.
+pub fn cell_of((x, y): Block) -> Cell {
     (x >> CELL, y >> CELL)
 }
 
 /// The cells of a region; `None` where there are too many.
 fn cells(region: &Region) -> Option<impl Iterator<Item = Cell> + use<>> {
-    let (least, most) = (cell(region.least()), cell(region.most()));
+    let (least, most) = (cell_of(region.least()), cell_of(region.most()));
     let side = |least: i32, most: i32| (i64::from(most) - i64::from(least) + 1).max(0);
     let count = side(least.0, most.0).saturating_mul(side(least.1, most.1));
     (count <= CELLS).then(|| (least.1..=most.1).flat_map(move |y| (least.0..=most.0).map(move |x| (x, y))))
@@ -87,7 +89,7 @@ impl RegionReaders {
 
     fn note_entry(&mut self, entry: u32, block: Option<Block>) {
         if let Some(block) = block {
-            self.entries.entry(cell(block)).or_default().push(entry);
+            self.entries.entry(cell_of(block)).or_default().push(entry);
         }
     }
 
@@ -209,7 +211,7 @@ impl RegionReaders {
 
     /// Notes a change of an entry of a state topic, whose block was another one before.
     pub(super) fn changed(&mut self, entry: u32, before: Option<Block>, now: Option<Block>) {
-        let (old, new) = (before.map(cell), now.map(cell));
+        let (old, new) = (before.map(cell_of), now.map(cell_of));
         if old != new {
             if let Some(entries) = old.and_then(|old| self.entries.get_mut(&old)) {
                 entries.retain(|other| *other != entry);
@@ -232,7 +234,7 @@ impl RegionReaders {
     /// Gives an event to the readers in whose region it is.
     pub(super) fn event(&mut self, message: &SharedMessage) {
         let Some(block) = message.place() else { return };
-        let around = self.cells.get(&cell(block)).into_iter().flatten().chain(&self.wide);
+        let around = self.cells.get(&cell_of(block)).into_iter().flatten().chain(&self.wide);
         for InCell { place, region } in around {
             if !region.contains(block) {
                 continue;

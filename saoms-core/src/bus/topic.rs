@@ -6,6 +6,7 @@ use saoms_lang::assembly::TaskProperties;
 
 use super::Mismatch;
 use super::events::EventLog;
+use super::interest::Interest;
 use super::links::Readers;
 use super::regions::RegionReaders;
 use super::state::StateTable;
@@ -31,6 +32,11 @@ pub(super) struct BusTopic {
     pub(super) readers: Readers,
     /// The readers that have a region, once there was one.
     regions: Option<Box<RegionReaders>>,
+    /// Number of readers, and what they want, if that is noted.
+    pub(super) reading: usize,
+    pub(super) interest: Option<Box<Interest>>,
+    /// The numbers of the observers outside the fleet that want all of it.
+    pub(super) watching: Vec<u32>,
 }
 
 #[derive(Clone)]
@@ -65,6 +71,9 @@ impl BusTopic {
             store: store(declared.kind),
             readers: Readers::default(),
             regions: None,
+            reading: 0,
+            interest: None,
+            watching: Vec::new(),
         }
     }
 
@@ -83,6 +92,9 @@ impl BusTopic {
             store: self.store.clone(),
             readers: Readers::default(),
             regions: self.regions.clone(),
+            reading: 0,
+            interest: None,
+            watching: Vec::new(),
         }
     }
 

@@ -22,7 +22,8 @@ const ACCESS: u64 = 4;
 const CALL: u64 = 5;
 const REPLY: u64 = 6;
 const CONTROL: u64 = 7;
-/// From here on each topic has two: one for its messages, one for those that this program asked for again.
+const LOOK: u64 = 8;
+/// From here on those of topics.
 const FIRST_OF_TOPICS: u64 = 16;
 
 /// Time of a sleep, in nanoseconds, after which the thread was held up, as by SIGSTOP: what others said meanwhile has
@@ -55,6 +56,7 @@ impl Client {
         session.subscribe(&key::alive_of_all(), ALIVE)?;
         session.subscribe(&key::ask(program), ASK)?;
         session.subscribe(&key::covered(program), COVERED)?;
+        session.subscribe(&key::look(program), LOOK)?;
         if membership.has_calls {
             session.subscribe(&key::call(program), CALL)?;
             session.subscribe(&key::reply(program), REPLY)?;

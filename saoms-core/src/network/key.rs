@@ -3,10 +3,13 @@
 //! | key | what is there |
 //! | --- | --- |
 //! | `saoms/1/topic/TOPIC/COMPONENT` | messages of components: CDR, with an [`Envelope`](super::exchange::wire::Envelope) beside it |
+//! | `saoms/1/topic/TOPIC/COMPONENT/X/Y` | the same of a state topic with places, that concern this cell of 16 by 16 blocks |
 //! | `saoms/1/alive/PROGRAM` | signs of life |
 //! | `saoms/1/ask/PROGRAM` | requests to this program to send messages again |
 //! | `saoms/1/again/PROGRAM/TOPIC` | messages that this program asked for |
 //! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
+//! | `saoms/1/look/PROGRAM` | requests to this program for the states of cells |
+//! | `saoms/1/around/PROGRAM/TOPIC` | answers to requests of this program |
 //! | `saoms/1/call/PROGRAM` | calls of its components |
 //! | `saoms/1/reply/PROGRAM` | answers to its calls |
 //! | `saoms/1/control/ASKER` | requests of operators to programs |
@@ -20,7 +23,9 @@ use std::fmt::Write as _;
 
 use saoms_api::extension::{Access, Topics};
 
+use super::exchange::Keys;
 use super::transport::UserKeys;
+use crate::bus::Cell;
 
 /// What all keys begin with: the version of what is said.
 pub const PREFIX: &str = "saoms/1";
@@ -70,14 +75,39 @@ pub fn name(part: &str) -> Option<String> {
     String::from_utf8(bytes).ok()
 }
 
-/// The key of the messages of a component on a topic.
-pub fn topic(topic: &str, component: &str) -> String {
-    format!("{PREFIX}/topic/{}/{}", part(topic), part(component))
+/// The key of the messages of a component on a topic, or of those that concern a cell.
+pub fn topic(topic: &str, component: &str, cell: Option<Cell>) -> String {
+    let key = format!("{PREFIX}/topic/{}/{}", part(topic), part(component));
+    match cell {
+        Some((x, y)) => format!("{key}/{x}/{y}"),
+        None => key,
+    }
 }
 
 /// The keys of all messages on a topic.
 pub fn of_topic(topic: &str) -> String {
-    format!("{PREFIX}/topic/{}/*", part(topic))
+    format!("{PREFIX}/topic/{}/**", part(topic))
+}
+
+/// The keys of those messages that a program asks for.
+pub fn asked(keys: &Keys, program: u64) -> String {
+    match keys {
+        Keys::All(topic) => of_topic(topic),
+        Keys::Elsewhere(topic) => format!("{PREFIX}/topic/{}/*", part(topic)),
+        Keys::Cell(topic, (x, y)) => format!("{PREFIX}/topic/{}/*/{x}/{y}", part(topic)),
+        Keys::Again(topic) => again(program, topic),
+        Keys::Around(topic) => around(program, topic),
+    }
+}
+
+/// The key of requests to a program for the states of cells.
+pub fn look(program: u64) -> String {
+    format!("{PREFIX}/look/{program:x}")
+}
+
+/// The key of answers to these requests of a program.
+pub fn around(program: u64, topic: &str) -> String {
+    format!("{PREFIX}/around/{program:x}/{}", part(topic))
 }
 
 /// The key of the signs of life of a program.
@@ -122,10 +152,16 @@ pub fn of_user(access: &Access) -> UserKeys {
         Topics::Some(names) => names.iter().map(|name| part(name)).collect(),
     };
     // Everybody is there, asks and answers.
-    let common = || [alive_of_all(), format!("{PREFIX}/ask/*"), format!("{PREFIX}/covered/*")];
+    let common = || {
+        let asked = ["ask", "covered", "look"].map(|what| format!("{PREFIX}/{what}/*"));
+        [alive_of_all()].into_iter().chain(asked)
+    };
     let of = |topics: &Topics| {
-        let of_topic = |name: &String| [format!("{PREFIX}/topic/{name}/*"), format!("{PREFIX}/again/*/{name}")];
-        common().into_iter().chain(names(topics).iter().flat_map(of_topic)).collect::<Vec<String>>()
+        let of_topic = |name: &String| {
+            let answers = ["again", "around"].map(|what| format!("{PREFIX}/{what}/*/{name}"));
+            [format!("{PREFIX}/topic/{name}/**")].into_iter().chain(answers)
+        };
+        common().chain(names(topics).iter().flat_map(of_topic)).collect::<Vec<String>>()
     };
     let (mut put, mut subscribe) = (of(&access.writes), of(&access.reads));
     subscribe.push(self::access());

@@ -1,6 +1,6 @@
 //! Where the threads of a run and of a transport leave what is for the thread of a network.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
@@ -12,6 +12,7 @@ use super::control::Answer;
 use super::exchange::call::{Outcome, OwnCall};
 use super::ticket::Ticket;
 use super::transport::{Delivered, Receiver};
+use crate::bus::Cell;
 
 /// Messages of components that wait for the thread of the network, at most.
 const MOST_MESSAGES: usize = 262_144;
@@ -34,6 +35,8 @@ pub(crate) enum FromRun {
     },
     /// Components read a topic.
     Reads { topic: Arc<str>, is_state: bool, schema: u64 },
+    /// They read these cells of it alone; `None`: all of it.
+    Wants { topic: Arc<str>, cells: Option<BTreeSet<Cell>> },
     /// A component calls one of another program; its outcome goes to the ticket.
     Call { call: OwnCall, ticket: Arc<Ticket> },
     /// A component has executed that uses the hardware of a component of this node; it does so again within this time
@@ -137,7 +140,7 @@ impl Port {
                 FromRun::Call { ticket, .. } => ticket.fill(Outcome::Dropped),
                 // Heartbeats are lost as on a network, and calls are made again.
                 FromRun::Beat { .. } | FromRun::Reply { .. } | FromRun::Unserved { .. } => {}
-                FromRun::Message { .. } | FromRun::Reads { .. } => waiting.lost += 1,
+                FromRun::Message { .. } | FromRun::Reads { .. } | FromRun::Wants { .. } => waiting.lost += 1,
                 // Who asks gives up, and can ask again.
                 FromRun::Answer { .. } => {}
             }

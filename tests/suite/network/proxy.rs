@@ -2,7 +2,7 @@
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::thread::{sleep, spawn};
@@ -30,6 +30,8 @@ struct Shared {
     /// Whether the present connections are dead.
     are_dead: Mutex<Arc<AtomicBool>>,
     is_over: AtomicBool,
+    /// Bytes that came from the far end.
+    bytes: Arc<AtomicU64>,
 }
 
 impl Proxy {
@@ -51,11 +53,16 @@ impl Proxy {
                     of_thread.streams.lock().unwrap().push(stream.try_clone().unwrap());
                 }
                 let is_dead = Arc::clone(&of_thread.are_dead.lock().unwrap());
-                carry(near.try_clone().unwrap(), far.try_clone().unwrap(), line, Arc::clone(&is_dead));
-                carry(far, near, line, is_dead);
+                carry(near.try_clone().unwrap(), far.try_clone().unwrap(), line, Arc::clone(&is_dead), Arc::default());
+                carry(far, near, line, is_dead, Arc::clone(&of_thread.bytes));
             }
         });
         Proxy { port: own, shared }
+    }
+
+    /// Bytes that came from the program that it leads to.
+    pub(super) fn bytes(&self) -> u64 {
+        self.shared.bytes.load(Ordering::SeqCst)
     }
 
     /// Ends all connections.
@@ -81,11 +88,12 @@ impl Drop for Proxy {
 }
 
 /// Carries bytes in one direction.
-fn carry(mut from: TcpStream, mut to: TcpStream, line: Line, is_dead: Arc<AtomicBool>) {
+fn carry(mut from: TcpStream, mut to: TcpStream, line: Line, is_dead: Arc<AtomicBool>, count: Arc<AtomicU64>) {
     let (late, due) = channel::<(Instant, Vec<u8>)>();
     spawn(move || {
         let mut bytes = vec![0; 64 << 10];
         while let Ok(size @ 1..) = from.read(&mut bytes) {
+            count.fetch_add(size as u64, Ordering::SeqCst);
             if !is_dead.load(Ordering::SeqCst) {
                 let _ = late.send((Instant::now() + line.delay, bytes[..size].to_owned()));
             }

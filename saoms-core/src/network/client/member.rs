@@ -9,7 +9,7 @@ use saoms_api::host::{cdr, shown};
 
 use super::super::control::{Answer, Ask, Asked, Other, Requests};
 use super::super::exchange::call::Outcome;
-use super::super::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
+use super::super::exchange::{Action, Destination, Exchange, Keys, News, OwnMessage, Settings};
 use super::super::fleet::{Fleet, FromNetwork, Membership};
 use super::super::port::{Frame, FromRun, Port, Waiting};
 use super::super::rights::{Granted, Rights};
@@ -18,7 +18,7 @@ use super::super::told::told;
 use super::super::transport::{Delivered, TransportSession};
 use super::super::{FROM_OUTSIDE, key};
 use super::link::Link;
-use super::{ACCESS, ALIVE, ASK, CALL, CONTROL, COVERED, FIRST_OF_TOPICS, REPLY};
+use super::{ACCESS, ALIVE, ASK, CALL, CONTROL, COVERED, FIRST_OF_TOPICS, LOOK, REPLY};
 
 /// Versions of other programs that are told, at most.
 const MOST_VERSIONS: usize = 8;
@@ -67,6 +67,8 @@ pub(super) struct Member<F> {
     granted_at: Option<Instant>,
     /// The token of the next subscription: no two have the same.
     next_token: u64,
+    /// The tokens of the subscriptions of topics.
+    tokens: HashMap<Keys, u64>,
     /// Versions of other programs that were told.
     others: BTreeSet<String>,
     /// Where the outcomes of calls go, by their lines and numbers.
@@ -103,6 +105,7 @@ impl<F: Fleet> Member<F> {
             membership,
             granted_at: None,
             next_token: FIRST_OF_TOPICS,
+            tokens: HashMap::new(),
             others: BTreeSet::new(),
             tickets: HashMap::new(),
             link: Link::default(),
@@ -234,22 +237,13 @@ impl<F: Fleet> Member<F> {
     fn take_from_run(&mut self, from_run: FromRun) {
         match from_run {
             FromRun::Reads { topic, is_state, schema } => {
-                let again = key::again(self.program, &topic);
-                for keys in [key::of_topic(&topic), again] {
-                    let token = self.next_token;
-                    self.next_token += 1;
-                    let Some(session) = &self.session else { return };
-                    if let Err(error) = session.subscribe(&keys, token) {
-                        let text = format!("topic `{topic}` cannot be read from the network: {error}");
-                        self.fleet.tell(Level::Error, text);
-                    }
-                }
                 let readers = self.membership.readers(&topic);
                 if let Some(told) = self.rights.as_mut().and_then(|rights| rights.read(&topic, &readers)) {
                     self.fleet.tell(Level::Error, told);
                 }
                 self.exchange.read(&topic, is_state, schema);
             }
+            FromRun::Wants { topic, cells } => self.exchange.want(&topic, cells.as_ref(), self.now()),
             FromRun::Call { call, ticket } => {
                 if let Some(told) = self.rights.as_mut().and_then(|rights| rights.call(&call.caller)) {
                     self.fleet.tell(Level::Error, told);
@@ -283,6 +277,7 @@ impl<F: Fleet> Member<F> {
                     component: &component,
                     to,
                     key: message.key(),
+                    place: message.place(),
                     sent: u64::try_from(sent).unwrap_or(u64::MAX),
                     schema,
                     cause: message.header().cause.0,
@@ -353,6 +348,11 @@ impl<F: Fleet> Member<F> {
                     }
                 }
             }
+            LOOK => {
+                if let Ok(look) = cdr::decode(&frame.message) {
+                    self.exchange.show(&look);
+                }
+            }
             FIRST_OF_TOPICS.. => {
                 let Frame { token, key, message, attachment } = frame;
                 self.take_messages(&Delivered { token: *token, key, message, attachment }, now);
@@ -368,8 +368,12 @@ impl<F: Fleet> Member<F> {
         if self.undelivered.len() > MOST_UNDELIVERED {
             return false;
         }
-        let is_again = !(delivered.token - FIRST_OF_TOPICS).is_multiple_of(2);
-        let topic = delivered.key.split('/').nth(if is_again { 4 } else { 3 }).and_then(key::name);
+        let topic = |place| delivered.key.split('/').nth(place).and_then(key::name);
+        let topic = match delivered.key.split('/').nth(2) {
+            Some("topic") => topic(3),
+            Some("again") => topic(4),
+            _ => return cdr::decode(delivered.message).is_ok_and(|around| self.exchange.see(around, now)),
+        };
         topic.is_some_and(|topic| self.exchange.receive(&topic, delivered.message, delivered.attachment, now))
     }
 
@@ -387,6 +391,8 @@ impl<F: Fleet> Member<F> {
     fn act(&mut self) {
         for action in self.exchange.take_actions() {
             match action {
+                Action::Subscribe(keys) => self.subscribe(keys),
+                Action::Unsubscribe(keys) => self.unsubscribe(&keys),
                 Action::Put { to, bytes } => self.put_or_keep(&to, bytes, None),
                 Action::Send { to, frame } => {
                     let (bytes, envelope) = frame.encode();
@@ -417,13 +423,36 @@ impl<F: Fleet> Member<F> {
         }
     }
 
+    fn subscribe(&mut self, keys: Keys) {
+        let Some(session) = &self.session else { return };
+        let token = self.next_token;
+        self.next_token += 1;
+        if let Err(error) = session.subscribe(&key::asked(&keys, self.program), token) {
+            let text = format!("topic `{}` cannot be read from the network: {error}", keys.topic());
+            self.fleet.tell(Level::Error, text);
+        }
+        self.tokens.insert(keys, token);
+    }
+
+    fn unsubscribe(&mut self, keys: &Keys) {
+        let Some(session) = &self.session else { return };
+        if let Some(token) = self.tokens.remove(keys)
+            && let Err(error) = session.unsubscribe(token)
+        {
+            // It goes on to hear what it does not need.
+            self.fleet.tell(Level::Warning, format!("topic `{}` is read still: {error}", keys.topic()));
+        }
+    }
+
     fn put_or_keep(&mut self, to: &Destination, bytes: Arc<[u8]>, envelope: Option<Arc<[u8]>>) {
         let key = match to {
-            Destination::Topic(topic, component) => key::topic(topic, component),
+            Destination::Topic(topic, component, cell) => key::topic(topic, component, *cell),
             Destination::Again(program, topic) => key::again(*program, topic),
             Destination::Alive(program) => key::alive(*program),
             Destination::Ask(program) => key::ask(*program),
             Destination::Covered(program) => key::covered(*program),
+            Destination::Look(program) => key::look(*program),
+            Destination::Around(program, topic) => key::around(*program, topic),
             Destination::Call(program) => key::call(*program),
             Destination::Reply(program) => key::reply(*program),
         };

@@ -7,6 +7,7 @@ use super::call::Outcome;
 use super::frame::Frame;
 use super::incoming::Arrived;
 use super::wire::Request;
+use crate::bus::Cell;
 
 /// Settings of a program on a network.
 #[derive(Clone, Debug)]
@@ -28,8 +29,8 @@ pub struct Settings {
 /// Where something is put for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Destination {
-    /// All programs that read a topic, of which this component sent a message.
-    Topic(Arc<str>, Arc<str>),
+    /// All programs that read a topic, of which this component sent a message; or those that read this cell of it.
+    Topic(Arc<str>, Arc<str>, Option<Cell>),
     /// A message of a topic that this program asked for again.
     Again(u64, Arc<str>),
     /// All programs: an [`Alive`](super::wire::Alive) of this one.
@@ -38,15 +39,48 @@ pub enum Destination {
     Ask(u64),
     /// A program: a [`Covered`](super::wire::Covered).
     Covered(u64),
+    /// A program: a [`Look`](super::wire::Look).
+    Look(u64),
+    /// A program: an [`Around`](super::wire::Around) of a topic.
+    Around(u64, Arc<str>),
     /// A program: a [`Request`].
     Call(u64),
     /// A program: a [`Reply`](super::wire::Reply).
     Reply(u64),
 }
 
+/// Messages of a topic that a program asks the network for.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Keys {
+    /// All.
+    All(Arc<str>),
+    /// Those that are under the key of no cell.
+    Elsewhere(Arc<str>),
+    /// Those of a cell.
+    Cell(Arc<str>, Cell),
+    /// Those that this program asked for again.
+    Again(Arc<str>),
+    /// Answers to what it asked of cells.
+    Around(Arc<str>),
+}
+
+impl Keys {
+    /// The topic.
+    pub fn topic(&self) -> &Arc<str> {
+        match self {
+            Keys::All(topic) | Keys::Elsewhere(topic) | Keys::Cell(topic, _) => topic,
+            Keys::Again(topic) | Keys::Around(topic) => topic,
+        }
+    }
+}
+
 /// What the program has to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
+    /// Ask the network for messages.
+    Subscribe(Keys),
+    /// Ask for them no more.
+    Unsubscribe(Keys),
     /// Put something on the network that the program says.
     Put {
         /// For whom.
@@ -133,6 +167,8 @@ pub struct OwnMessage<'a> {
     pub schema: u64,
     /// The record of the journal with the reason; 0 is none.
     pub cause: u64,
+    /// The block of a message whose type has a place.
+    pub place: Option<(i32, i32)>,
     /// The message.
     pub bytes: &'a [u8],
 }

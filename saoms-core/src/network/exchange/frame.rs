@@ -6,7 +6,7 @@ use saoms_api::host::cdr;
 
 use super::incoming::Arrived;
 use super::outgoing::Sent;
-use super::wire::{Enclosed, Envelope, LARGEST_NUMBER};
+use super::wire::{Enclosed, Envelope, InCell, LARGEST_NUMBER};
 
 /// Events in one frame, at most, and their bytes, at most, but for those of a single one.
 const MOST_MESSAGES: usize = 512;
@@ -59,6 +59,7 @@ impl Frame {
             schema: first.map_or(0, |sent| sent.schema),
             number: first.map_or(0, |sent| sent.number),
             messages: enclosed.collect(),
+            cells: first.map(|sent| sent.cells.clone()).unwrap_or_default(),
         });
         let bytes = match self.messages.as_slice() {
             [message] => Arc::clone(&message.bytes),
@@ -80,12 +81,14 @@ pub(super) struct ArrivedFrame {
     pub(super) schema: u64,
     /// The messages with their numbers.
     pub(super) messages: Vec<(u64, Arrived)>,
+    /// The cells that a message of a state topic concerns.
+    pub(super) cells: Vec<InCell>,
 }
 
 impl ArrivedFrame {
     /// Reads a frame; `None` if its envelope does not fit its bytes.
     pub(super) fn decode(bytes: &[u8], envelope: &[u8]) -> Option<ArrivedFrame> {
-        let Envelope { program, component, schema, number, messages } = cdr::decode(envelope).ok()?;
+        let Envelope { program, component, schema, number, messages, cells } = cdr::decode(envelope).ok()?;
         if number > LARGEST_NUMBER {
             return None;
         }
@@ -98,6 +101,6 @@ impl ArrivedFrame {
             let (component, key) = (Arc::clone(&component), has_key.then_some(key));
             arrived.push((number, Arrived { component, to, key, sent, cause, bytes: bytes.to_owned() }));
         }
-        rest.is_empty().then_some(ArrivedFrame { program, schema, messages: arrived })
+        rest.is_empty().then_some(ArrivedFrame { program, schema, messages: arrived, cells })
     }
 }

@@ -3,14 +3,17 @@
 use std::sync::Arc;
 
 use super::action::{Action, News};
+use super::cells::Cells;
 use super::outgoing::Outgoing;
 use super::peer::{Peer, Reading};
 use super::wire::{Alive, LARGEST_NUMBER, Reads, Received, Sends, Vote, Welcome};
-use super::{Exchange, MILLISECOND, note_missing};
+use super::{Exchange, MILLISECOND, look, note_missing};
 
 /// Programs that are known at once, and topics of one of them, at most: more is no fleet.
 const MOST_PROGRAMS: usize = 4_096;
 const MOST_TOPICS: usize = 4_096;
+/// Each sign of life of so many says all that was received, the others what is new.
+const FULL: u64 = 8;
 /// Longest time without a sign of life that a program asks for, in milliseconds: three periods of a day.
 const LONGEST_PATIENCE: u64 = 3 * 24 * 3_600_000;
 
@@ -66,9 +69,6 @@ impl Exchange {
     fn hear_reader(&mut self, alive: &Alive) {
         let Some(peer) = self.peers.get_mut(&alive.program) else { return };
         let mut is_new = false;
-        for reading in peer.reading.values_mut() {
-            reading.is_welcomed = false;
-        }
         for Reads { topic } in &alive.reads {
             if !peer.reading.contains_key(topic.as_str()) {
                 let outgoing = self.outgoing.get(topic.as_str());
@@ -96,9 +96,16 @@ impl Exchange {
         let program = alive.program;
         let mut ready = Vec::new();
         let Some(peer) = self.peers.get_mut(&program) else { return };
-        for Sends { topic, last, oldest, .. } in &alive.sends {
-            let Some((topic, _)) = self.reads.get_key_value(topic.as_str()) else { continue };
+        for Sends { topic, last, oldest, by_cells, since, cells, .. } in &alive.sends {
+            let Some((topic, own)) = self.reads.get_key_value(topic.as_str()) else { continue };
             let incoming = peer.incoming.entry(Arc::clone(topic)).or_default();
+            incoming.is_by_cells = *by_cells;
+            if let Some(wanted) = own.cells.as_ref().filter(|_| *by_cells) {
+                let around = incoming.around.get_or_insert_with(|| look::read(wanted));
+                around.hear(*last, *since, cells);
+                around.settle(now);
+                continue;
+            }
             incoming.last = incoming.last.max(*last);
             let (count, late) = incoming.skip_to(*oldest);
             if count > 0 {
@@ -124,16 +131,28 @@ impl Exchange {
     pub(super) fn sign_of_life(&mut self, leaves: bool) -> Alive {
         self.sign += 1;
         self.note_sign();
-        let sends = self.outgoing.iter().map(|(topic, outgoing)| Sends {
-            topic: topic.to_string(),
-            is_state: outgoing.is_state(),
-            last: outgoing.last,
-            oldest: outgoing.oldest(),
+        let sends = self.outgoing.iter().map(|(topic, outgoing)| {
+            let (since, cells) = outgoing.cells.as_ref().map(Cells::news).unwrap_or_default();
+            Sends {
+                topic: topic.to_string(),
+                is_state: outgoing.is_state(),
+                last: outgoing.last,
+                oldest: outgoing.oldest(),
+                by_cells: outgoing.cells.is_some(),
+                since,
+                cells,
+            }
         });
-        let received = self.peers.iter().flat_map(|(program, peer)| {
-            let known = peer.incoming.iter().filter(|(_, incoming)| incoming.next != 0);
-            known.map(|(topic, incoming)| Received { program: *program, topic: topic.to_string(), next: incoming.next })
-        });
+        let is_full = self.sign.is_multiple_of(FULL);
+        let mut received = Vec::new();
+        for (program, peer) in &mut self.peers {
+            for (topic, incoming) in &mut peer.incoming {
+                let is_state = self.reads.get(topic).is_some_and(|own| own.is_state);
+                if let Some(next) = incoming.say_received(is_state, is_full) {
+                    received.push(Received { program: *program, topic: topic.to_string(), next });
+                }
+            }
+        }
         let welcomes = self.peers.iter().flat_map(|(reader, peer)| {
             let new = peer.reading.iter().filter(|(_, reading)| !reading.is_welcomed);
             new.map(|(topic, reading)| Welcome { reader: *reader, topic: topic.to_string(), first: reading.next })
@@ -145,7 +164,7 @@ impl Exchange {
             patience: self.settings.patience / MILLISECOND,
             sends: sends.collect(),
             reads: self.reads.keys().map(|topic| Reads { topic: topic.to_string() }).collect(),
-            received: received.collect(),
+            received,
             welcomes: welcomes.collect(),
             vote: self.vote as u8,
             leaves,
@@ -177,11 +196,12 @@ impl Exchange {
 /// True if a sign of life is one that a program of a fleet says: who says others cannot make this one count beyond its
 /// numbers, or keep more than it has room for.
 fn is_sane(alive: &Alive) -> bool {
-    let sends = alive.sends.iter().flat_map(|sends| [sends.last, sends.oldest]);
+    let sends = alive.sends.iter().flat_map(|sends| [sends.last, sends.oldest, sends.since]);
+    let cells = alive.sends.iter().flat_map(|sends| sends.cells.iter().map(|cell| cell.last));
     let welcomes = alive.welcomes.iter().map(|welcome| welcome.first);
     let received = alive.received.iter().map(|received| received.next);
     alive.patience <= LONGEST_PATIENCE
         && alive.reads.len() <= MOST_TOPICS
         && alive.sends.len() <= MOST_TOPICS
-        && sends.chain(welcomes).chain(received).all(|number| number <= LARGEST_NUMBER)
+        && sends.chain(cells).chain(welcomes).chain(received).all(|number| number <= LARGEST_NUMBER)
 }

@@ -1,9 +1,12 @@
 //! The messages of another program on one topic, on their way to the components of this one.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-use super::wire::Covered;
+use super::around::ReadCells;
+use super::outgoing::StateKey;
+use super::wire::{Covered, InCell, KnownState};
+use crate::bus::Cell;
 
 /// A message of another program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,6 +25,8 @@ pub struct Arrived {
     pub bytes: Vec<u8>,
 }
 
+/// Signs of life that say what was received, since some of them may be lost.
+const REPEATS: u32 = 4;
 /// Messages that wait for an earlier one, at most.
 pub(super) const MOST_WAITING: usize = 16_384;
 
@@ -36,8 +41,12 @@ pub(super) struct Incoming {
     waiting: BTreeMap<u64, Option<Arrived>>,
     /// Of a state topic, messages that are outdated: the number of the first of each stretch, with that of the last.
     outdated: BTreeMap<u64, u64>,
-    /// Of a state topic, the number of the newest message of each component and key.
-    newest: HashMap<(Arc<str>, Option<u64>), u64>,
+    /// Of a state topic, the number of the newest message of each component and key, and its cell.
+    newest: HashMap<StateKey, (u64, Option<Cell>)>,
+    /// Of a state topic, true if the sender says in which cells its messages are.
+    pub(super) is_by_cells: bool,
+    /// Of such a topic, what is read of it, if that is not all.
+    pub(super) around: Option<ReadCells>,
     /// Time at which missing messages are asked for (again).
     pub(super) ask_at: Option<u64>,
     /// Number of times that they were asked for without an answer.
@@ -46,6 +55,8 @@ pub(super) struct Incoming {
     pub(super) asked_up_to: u64,
     /// The number of the first missing message when somebody looked last.
     pub(super) seen: u64,
+    /// What signs of life said of it, and how many did since it was that.
+    said: (u64, u32),
 }
 
 impl Incoming {
@@ -66,17 +77,63 @@ impl Incoming {
 
     /// Takes a message of a state topic, which waits for no other. Gives it unless a newer one of its component and key
     /// was here before.
-    pub(super) fn take_state(&mut self, number: u64, arrived: Arrived) -> Option<Arrived> {
+    pub(super) fn take_state(&mut self, number: u64, arrived: Arrived, cells: &[InCell]) -> Option<Arrived> {
         self.last = self.last.max(number);
-        if (self.next == 0 || number >= self.next) && self.waiting.len() < MOST_WAITING {
+        if let Some(around) = &mut self.around {
+            cells.iter().for_each(|cell| around.take(number, *cell));
+        } else if (self.next == 0 || number >= self.next) && self.waiting.len() < MOST_WAITING {
             self.waiting.insert(number, None);
             self.advance();
         }
+        let cell = cells.iter().find(|cell| !cell.has_left).map(|cell| (cell.x, cell.y));
+        self.take_newest(number, arrived, cell)
+    }
+
+    /// Gives a message of a state topic, unless a newer one of its component and key was here before.
+    pub(super) fn take_newest(&mut self, number: u64, arrived: Arrived, cell: Option<Cell>) -> Option<Arrived> {
         let newest = self.newest.entry((Arc::clone(&arrived.component), arrived.key)).or_default();
-        (number > *newest).then(|| {
-            *newest = number;
+        (number > newest.0).then(|| {
+            *newest = (number, cell);
             arrived
         })
+    }
+
+    /// The messages that are here, and were in these cells.
+    pub(super) fn known_in(&self, cells: &BTreeSet<Cell>) -> Vec<KnownState> {
+        let inside = self.newest.iter().filter(|(_, (_, cell))| cell.is_some_and(|cell| cells.contains(&cell)));
+        let known = inside.map(|((component, key), (number, _))| KnownState {
+            component: component.to_string(),
+            key: key.unwrap_or_default(),
+            has_key: key.is_some(),
+            number: *number,
+        });
+        let mut known: Vec<KnownState> = known.collect();
+        known.sort_unstable_by_key(|known| known.number);
+        known
+    }
+
+    /// Reads all of a topic of which some cells were read: asks again for what there is.
+    pub(super) fn read_all(&mut self) {
+        if self.around.take().is_some() {
+            (self.next, self.ask_at) = (1, None);
+            (self.waiting, self.outdated) = Default::default();
+        }
+    }
+
+    /// What a sign of life says of it: the number of the first message that may be missing, of those that concern what
+    /// is read. `None` where that has been said: of a state topic nobody waits for it.
+    pub(super) fn say_received(&mut self, is_state: bool, is_full: bool) -> Option<u64> {
+        let next = self.around.as_ref().map_or(self.next, |around| around.next);
+        if next == 0 {
+            return None;
+        }
+        let (said, times) = &mut self.said;
+        if *said == 0 || *said != next && !is_state {
+            *times = 0;
+        }
+        *said = next;
+        *times = times.saturating_add(1);
+        (is_full || *times <= REPEATS).then_some(next)
     }
 
     /// The sender says where this program begins, once. Gives what can be delivered now.
@@ -117,7 +174,7 @@ impl Incoming {
 
     /// The numbers of the first messages that are missing.
     pub(super) fn missing(&self) -> Option<(u64, u64)> {
-        if self.next == 0 || self.next > self.last {
+        if self.next == 0 || self.next > self.last || self.around.is_some() {
             return None;
         }
         let waiting = self.waiting.first_key_value().map(|(number, _)| *number);

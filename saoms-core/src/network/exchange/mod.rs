@@ -6,16 +6,20 @@
 //!
 //! - A reader receives the events of a topic from the moment on in which their sender has heard of it: the sender says
 //!   where it begins (*welcome*). It receives them once, and in the order of their sending.
-//! - Of a state topic a reader receives the newest message of each component and key, at first all that there are.
+//! - Of a state topic a reader receives the newest message of each component and key, at first all that there are; of
+//!   one whose messages have a place those of the cells that it wants, and what left them.
 //! - What is kept is bounded. Beyond the bound, programs that are away are given up first; then events are lost, and
 //!   both ends say so.
 //! - A [call] of a component of another program runs at most once.
 
 mod action;
+mod around;
 pub mod call;
+mod cells;
 mod frame;
 mod hear;
 mod incoming;
+mod look;
 mod outgoing;
 mod owners;
 mod peer;
@@ -28,21 +32,23 @@ use std::sync::Arc;
 
 use saoms_api::host::cdr;
 
-pub use self::action::{Action, Destination, News, OwnMessage, Settings};
+pub use self::action::{Action, Destination, Keys, News, OwnMessage, Settings};
 use self::call::Line;
 use self::frame::ArrivedFrame;
 pub use self::frame::Frame;
 pub use self::incoming::Arrived;
 use self::incoming::Incoming;
+use self::look::WantedCells;
 use self::outgoing::{Kept, Outgoing, Sent};
 use self::owners::Owner;
 use self::peer::Peer;
 use self::wire::{Again, Alive, Covered, Vote};
+use crate::bus::cell_of;
 
 /// Nanoseconds of a millisecond.
 const MILLISECOND: u64 = 1_000_000;
-/// Time between two signs of life while there is something to say.
-const BUSY_INTERVAL: u64 = 100 * MILLISECOND;
+/// Least and greatest time between two signs of life while there is something to say: four in a period of the program.
+const BUSY_INTERVAL: [u64; 2] = [100 * MILLISECOND, 250 * MILLISECOND];
 /// Time for which a message may be late before it is asked for.
 const LATENESS: u64 = 20 * MILLISECOND;
 /// Longest time between two requests for the same messages.
@@ -53,10 +59,12 @@ const MOST_AGAIN: usize = 1_024;
 const MOST_AGAIN_BYTES: usize = 1 << 20;
 
 /// A topic that components of this program read.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct OwnTopic {
     is_state: bool,
     schema: u64,
+    /// Of a state topic, the cells that are read, if not all of it is.
+    cells: Option<WantedCells>,
 }
 
 /// One program on a network.
@@ -90,6 +98,9 @@ pub struct Exchange {
     lines: BTreeMap<u64, Line>,
     /// When something is due for them.
     calls_at: u64,
+    /// The number of the last look at cells, and when cells are due that nobody wants any more.
+    looks: u64,
+    drop_at: u64,
     /// The numbers of the newest signs of life, each with its time.
     signs: VecDeque<(u64, u64)>,
     actions: Vec<Action>,
@@ -115,6 +126,8 @@ impl Exchange {
             has_news: true,
             lines: BTreeMap::new(),
             calls_at: u64::MAX,
+            looks: 0,
+            drop_at: u64::MAX,
             signs: VecDeque::new(),
             actions: Vec::new(),
         }
@@ -128,14 +141,19 @@ impl Exchange {
 
     /// Components of this program read a topic from now on.
     pub fn read(&mut self, topic: &Arc<str>, is_state: bool, schema: u64) {
-        if self.reads.insert(Arc::clone(topic), OwnTopic { is_state, schema }).is_none() {
-            self.say_soon();
+        if let Some(own) = self.reads.get_mut(topic) {
+            (own.is_state, own.schema) = (is_state, schema);
+            return;
         }
+        self.reads.insert(Arc::clone(topic), OwnTopic { is_state, schema, cells: None });
+        let both = [Keys::All, Keys::Again].map(|keys| Action::Subscribe(keys(Arc::clone(topic))));
+        self.actions.extend(both);
+        self.say_soon();
     }
 
     /// A component sends a message.
     pub fn send(&mut self, message: OwnMessage<'_>) {
-        let OwnMessage { topic, is_state, component, to, key, sent, schema, cause, bytes } = message;
+        let OwnMessage { topic, is_state, component, to, key, sent, schema, cause, place, bytes } = message;
         if !self.outgoing.contains_key(topic) {
             self.outgoing.insert(Arc::clone(topic), Outgoing::new(is_state));
             // Readers that were heard before read it from its first message on.
@@ -143,13 +161,19 @@ impl Exchange {
         }
         let Some(outgoing) = self.outgoing.get_mut(topic) else { return };
         let (component, bytes) = (Arc::clone(component), bytes.into());
-        let sent = Sent { number: outgoing.last + 1, component, to, key, sent, schema, cause, bytes };
+        let cells = outgoing.place(&(Arc::clone(&component), key), place.map(cell_of));
+        let sent = Sent { number: outgoing.last + 1, component, to, key, sent, schema, cause, bytes, cells };
         if is_state || self.peers.values().any(|peer| peer.needs(topic).is_some()) {
             outgoing.keep(sent.clone());
         } else {
             outgoing.last = sent.number;
         }
-        let to = Destination::Topic(Arc::clone(topic), Arc::clone(&sent.component));
+        let to = |cell| Destination::Topic(Arc::clone(topic), Arc::clone(&sent.component), cell);
+        let left = sent.cells.iter().find(|cell| cell.has_left).map(|left| to(Some((left.x, left.y))));
+        let to = to(sent.cell());
+        if let Some(left) = left {
+            self.put_message(left, is_state, sent.clone());
+        }
         self.put_message(to, is_state, sent);
         self.has_news = true;
     }
@@ -171,15 +195,19 @@ impl Exchange {
     /// Messages of a component of another program arrived, with their envelope. True if some before them are missing,
     /// and are to be asked for.
     pub fn receive(&mut self, topic: &str, bytes: &[u8], envelope: &[u8], now: u64) -> bool {
+        self.pass(now);
         let Some((topic, own)) = self.reads.get_key_value(topic) else { return false };
-        let (topic, own) = (Arc::clone(topic), *own);
-        let Some(ArrivedFrame { program, schema, messages }) = ArrivedFrame::decode(bytes, envelope) else {
+        let topic = Arc::clone(topic);
+        let Some(ArrivedFrame { program, schema, messages, cells }) = ArrivedFrame::decode(bytes, envelope) else {
             return false;
         };
-        self.pass(now);
         // One that was never heard is heard soon, and its messages are sent again.
         let Some(peer) = self.peers.get_mut(&program) else { return false };
         let incoming = peer.incoming.entry(Arc::clone(&topic)).or_default();
+        if !cells.is_empty() && incoming.around.is_none() {
+            incoming.is_by_cells = true;
+            incoming.around = own.cells.as_ref().map(look::read);
+        }
         if schema != own.schema && peer.differing.insert(Arc::clone(&topic)) {
             let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
             self.actions.push(Action::Tell(News::Differs { program, name, topic }));
@@ -187,12 +215,16 @@ impl Exchange {
         let mut ready = Vec::with_capacity(messages.len());
         for (number, arrived) in messages {
             match own.is_state {
-                true => ready.extend(incoming.take_state(number, arrived)),
+                true => ready.extend(incoming.take_state(number, arrived, &cells)),
                 false => incoming.take_event(number, arrived, &mut ready),
             }
         }
         note_missing(incoming, now);
-        let is_missing = incoming.ask_at.is_some();
+        let mut is_missing = incoming.ask_at.is_some();
+        if let Some(around) = &mut incoming.around {
+            around.settle(now);
+            is_missing |= around.look_at.is_some();
+        }
         self.has_news = true;
         self.deliver(program, &topic, ready);
         is_missing
@@ -236,13 +268,16 @@ impl Exchange {
     pub fn tick(&mut self, now: u64) -> u64 {
         self.pass(now);
         self.miss(now);
-        let next = self.ask(now);
+        self.drop_cells(now);
+        let next = self.ask(now).min(self.look(now)).min(self.drop_at);
         if now >= self.sign_at {
             let alive = self.sign_of_life(false);
             self.put_alive(&alive);
             let quiet = self.settings.patience / 4;
             let is_busy = std::mem::take(&mut self.has_news) || !self.is_complete();
-            self.sign_at = now + if is_busy { quiet.min(BUSY_INTERVAL) } else { quiet };
+            let [least, most] = BUSY_INTERVAL;
+            self.sign_at =
+                now + if is_busy { quiet.min((self.settings.patience / 12).clamp(least, most)) } else { quiet };
         }
         self.pursue_calls();
         next.min(self.sign_at).min(self.calls_at)
@@ -413,6 +448,12 @@ impl Exchange {
     fn forget_received(&mut self) {
         for (topic, outgoing) in &mut self.outgoing {
             let needed = self.peers.values().filter_map(|peer| peer.needs(topic)).min();
+            if let Some(cells) = &mut outgoing.cells {
+                // Who is away looks when it is back.
+                let there = self.peers.values().filter(|peer| peer.is_reachable);
+                let needed = there.filter_map(|peer| peer.needs(topic)).min().unwrap_or(outgoing.last + 1);
+                cells.forget(needed.saturating_sub(1));
+            }
             outgoing.forget_before(needed.unwrap_or(outgoing.last + 1));
         }
     }

@@ -3,6 +3,10 @@
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::Arc;
 
+use super::cells::Cells;
+use super::wire::InCell;
+use crate::bus::Cell;
+
 /// A message that was sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Sent {
@@ -17,9 +21,21 @@ pub(super) struct Sent {
     pub(super) schema: u64,
     pub(super) cause: u64,
     pub(super) bytes: Arc<[u8]>,
+    /// The cells that it concerns.
+    pub(super) cells: Vec<InCell>,
 }
 
 impl Sent {
+    /// Its component and key.
+    pub(super) fn key(&self) -> StateKey {
+        (Arc::clone(&self.component), self.key)
+    }
+
+    /// The cell that it is in.
+    pub(super) fn cell(&self) -> Option<Cell> {
+        self.cells.iter().find(|cell| !cell.has_left).map(|cell| (cell.x, cell.y))
+    }
+
     fn size(&self) -> usize {
         // What stands around its bytes counts, too: small messages are the usual ones.
         self.bytes.len() + size_of::<Sent>() + 64
@@ -46,6 +62,8 @@ pub(super) struct Outgoing {
     pub(super) kept: Kept,
     /// The size of what is kept, in bytes.
     pub(super) size: usize,
+    /// Of a state topic whose messages have a place, where they are.
+    pub(super) cells: Option<Cells>,
 }
 
 impl Outgoing {
@@ -54,7 +72,7 @@ impl Outgoing {
             true => Kept::States { newest: BTreeMap::new(), numbers: HashMap::new() },
             false => Kept::Events(VecDeque::new()),
         };
-        Outgoing { last: 0, kept, size: 0 }
+        Outgoing { last: 0, kept, size: 0, cells: None }
     }
 
     pub(super) fn is_state(&self) -> bool {
@@ -68,13 +86,30 @@ impl Outgoing {
         match &mut self.kept {
             Kept::Events(events) => events.push_back(sent),
             Kept::States { newest, numbers } => {
-                let key = (Arc::clone(&sent.component), sent.key);
+                let key = sent.key();
                 if let Some(before) = numbers.insert(key, sent.number).and_then(|number| newest.remove(&number)) {
                     self.size -= before.size();
                 }
                 newest.insert(sent.number, sent);
             }
         }
+    }
+
+    /// The newest message of a state topic with this component and key.
+    pub(super) fn newest(&self, key: &StateKey) -> Option<&Sent> {
+        match &self.kept {
+            Kept::Events(_) => None,
+            Kept::States { newest, numbers } => newest.get(numbers.get(key)?),
+        }
+    }
+
+    /// Notes in which cell the next message of a state topic is. Gives those that it concerns.
+    pub(super) fn place(&mut self, key: &StateKey, cell: Option<Cell>) -> Vec<InCell> {
+        if !self.is_state() || cell.is_none() && self.cells.is_none() {
+            return Vec::new();
+        }
+        let (number, before) = (self.last + 1, self.newest(key).and_then(Sent::cell));
+        self.cells.get_or_insert_default().note(number, before, cell)
     }
 
     /// The number of the first message that can be sent again.

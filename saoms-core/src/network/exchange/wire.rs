@@ -20,6 +20,22 @@ pub struct Envelope {
     pub number: u64,
     /// The messages.
     pub messages: Vec<Enclosed>,
+    /// The cells that a message of a state topic with a place concerns: that of its block, and the one that it left.
+    pub cells: Vec<InCell>,
+}
+
+/// A cell of blocks that a message concerns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/InCell")]
+pub struct InCell {
+    /// Its column: that of its blocks, by 16.
+    pub x: i32,
+    /// Its row.
+    pub y: i32,
+    /// The number of the message before this one that concerned the cell, or a greater one.
+    pub before: u64,
+    /// True if the message before it of its component and key was in this cell, and this one is not.
+    pub has_left: bool,
 }
 
 /// What an [`Envelope`] says of one message.
@@ -102,6 +118,24 @@ pub struct Sends {
     pub last: u64,
     /// The number of the first message that can be sent again.
     pub oldest: u64,
+    /// True for a state topic whose messages are under the keys of cells.
+    pub by_cells: bool,
+    /// Cells that a message after this number concerned are in `cells`.
+    pub since: u64,
+    /// The cells that changed.
+    pub cells: Vec<CellChange>,
+}
+
+/// A cell of blocks, with the number of the last message that concerned it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/CellChange")]
+pub struct CellChange {
+    /// Its column.
+    pub x: i32,
+    /// Its row.
+    pub y: i32,
+    /// The number of the message.
+    pub last: u64,
 }
 
 /// A topic that components of a program read.
@@ -164,6 +198,90 @@ pub struct Covered {
     pub last: u64,
     /// Those that are not outdated, in order.
     pub numbers: Vec<u64>,
+}
+
+/// A request for the states that concern cells.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Look")]
+pub struct Look {
+    /// The program that asks.
+    pub reader: u64,
+    /// The topic.
+    pub topic: String,
+    /// The number of the request: a later one has a greater one.
+    pub number: u64,
+    /// The cells.
+    pub cells: Vec<CellName>,
+    /// The messages in these cells that it has.
+    pub known: Vec<KnownState>,
+}
+
+/// A cell of blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Message)]
+#[message(name = "saoms_msgs/msg/CellName")]
+pub struct CellName {
+    /// Its column: that of its blocks, by 16.
+    pub x: i32,
+    /// Its row.
+    pub y: i32,
+}
+
+/// A message of a state topic that a program has.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/KnownState")]
+pub struct KnownState {
+    /// The component that sent it.
+    pub component: String,
+    /// Its key.
+    pub key: u64,
+    /// True if there is a key.
+    pub has_key: bool,
+    /// Its number.
+    pub number: u64,
+}
+
+/// The answer to a [`Look`]: what the reader lacks of the first of its cells.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Around")]
+pub struct Around {
+    /// The program that answers.
+    pub program: u64,
+    /// The topic.
+    pub topic: String,
+    /// The number of the request.
+    pub number: u64,
+    /// The number of the last message of the topic: what concerns the cells up to it is in `messages`, or known.
+    pub last: u64,
+    /// The cells of this answer; the reader asks again for the others.
+    pub cells: Vec<CellName>,
+    /// The hash of the schema of the messages.
+    pub schema: u64,
+    /// What the reader lacks.
+    pub messages: Vec<AroundState>,
+}
+
+/// A message of an [`Around`].
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/AroundState")]
+pub struct AroundState {
+    /// Its number.
+    pub number: u64,
+    /// The component that sent it.
+    pub component: String,
+    /// The component that it is for; empty: all readers.
+    pub to: String,
+    /// Its key.
+    pub key: u64,
+    /// True if there is a key.
+    pub has_key: bool,
+    /// Wall clock of its sending, in nanoseconds since 1970.
+    pub sent: u64,
+    /// The record of the sender's journal with the reason; 0 is none.
+    pub cause: u64,
+    /// The cell that it is in; none if it is in none any more.
+    pub cell: Option<CellName>,
+    /// The message.
+    pub bytes: Vec<u8>,
 }
 
 /// A call of an operation of a component, to the program that has it; or, with the number 0, a heartbeat for its

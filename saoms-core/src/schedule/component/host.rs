@@ -276,6 +276,7 @@ impl Host for ComponentHost<'_> {
         let mut engine = self.shared.lock();
         let was_in_region = engine.bus.has_region(reader);
         engine.bus.set_region(reader, region, queue);
+        engine.tell_interest(topic);
         if !(was_in_region && region.is_some()) {
             self.part.collection.published = 0;
         }

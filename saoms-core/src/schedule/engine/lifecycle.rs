@@ -188,6 +188,7 @@ impl Engine {
         for kept in body.part.kept.drain(..) {
             let topic = self.bus.topic_of(&kept);
             let lost = self.bus.unsubscribe(kept);
+            self.tell_interest(topic);
             if lost > 0 {
                 let topic = std::sync::Arc::clone(self.bus.name(topic));
                 self.dropped(index, &topic, lost, &[], now);

@@ -117,9 +117,27 @@ impl Engine {
     /// A component of a network reads a topic.
     pub(super) fn read_from_network(&mut self, network: u8, topic: TopicId) {
         self.use_on_network(network, topic);
-        let schema = self.schema_of(topic).0;
-        let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
-        self.networks.waiting.push((network, FromRun::Reads { topic, is_state, schema }));
+        let (schema, has_place) = {
+            let (hash, schema) = self.schema_of(topic);
+            (*hash, schema.as_ref().is_some_and(|schema| schema.has_place()))
+        };
+        let (name, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
+        self.networks.waiting.push((network, FromRun::Reads { topic: name, is_state, schema }));
+        if is_state && has_place {
+            self.bus.note_interest(topic);
+            self.tell_interest(topic);
+        }
+    }
+
+    /// Tells the networks of a topic which of its cells are read here, if that has changed.
+    #[inline]
+    pub(super) fn tell_interest(&mut self, topic: TopicId) {
+        if let Some(cells) = self.bus.changed_interest(topic) {
+            for network in self.networks.topics.get(&topic).into_iter().flatten() {
+                let (topic, cells) = (Arc::clone(self.bus.name(topic)), cells.clone());
+                self.networks.waiting.push((*network, FromRun::Wants { topic, cells }));
+            }
+        }
     }
 
     /// True if the run may end although no component votes: some are periodic, and nothing is to come from outside.

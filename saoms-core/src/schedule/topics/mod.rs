@@ -112,6 +112,8 @@ pub(super) fn watch(
         } else {
             engine.bus.ignore(id, number);
         }
+        engine.bus.watch_all(id, number, wanted && observer.hears_others());
+        engine.tell_interest(id);
     }
     let schema = engine.bus.schema(id).to_owned();
     let message = engine.bus.message(id).to_owned();

@@ -1,8 +1,8 @@
-//! Numbered events, and readers that hold what they receive to what was sent.
+//! Numbered events, and readers that hold what they receive to what was sent; walkers that hear who is near.
 
 use std::collections::BTreeMap;
 
-use saoms_api::{Class, Component, Context, Failure, Message, Publisher, Subscription, Topic, Work};
+use saoms_api::{Class, Component, Context, Failure, Field, Message, Publisher, Region, Subscription, Topic, Work};
 
 /// A numbered event.
 #[derive(Clone, Debug, Message)]
@@ -122,6 +122,95 @@ impl Component for Reader {
     }
 }
 
+/// A block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+#[field(pair)]
+pub struct Spot {
+    x: i32,
+    y: i32,
+}
+
+/// Where a walker is.
+#[derive(Clone, Debug, Message)]
+#[message(place = "at")]
+pub struct Step {
+    walker: String,
+    at: Spot,
+    filler: String,
+}
+
+const STEPS: Topic<Step> = Topic::state("STEPS").optional();
+
+/// Walks along a row, once others are there, and says whom it meets within four blocks.
+#[derive(Class)]
+#[class(name = "numbers.Walker", periodic)]
+pub struct Walker {
+    /// Where it begins.
+    #[property]
+    from: i32,
+    /// Where it ends.
+    #[property]
+    to: i32,
+    /// The letters of a text in each of its messages.
+    #[property(default = 0)]
+    size: u32,
+    #[publishes(STEPS)]
+    own: Publisher<Step>,
+    #[subscribes(STEPS)]
+    others: Subscription<Step>,
+    #[subscribes(PRESENT)]
+    present: Subscription<Present>,
+    walked: i32,
+    met: BTreeMap<u32, String>,
+    may_go: bool,
+}
+
+impl Component for Walker {
+    type Properties = saoms_api::Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let x = self.from + self.walked * (self.to - self.from).signum();
+        context.set_region(&self.others, Some(Region::around((x, 0), 4)))?;
+        for (header, Step { walker, at, .. }) in context.receive(&self.others).with_headers() {
+            if walker != context.name() && self.met.insert(header.sender, walker.clone()).is_none() {
+                context.info(format!("meets {walker} at {}", at.x));
+            }
+        }
+        for departed in context.departed(&self.others).to_vec() {
+            if let Some(walker) = self.met.remove(&departed.sender) {
+                context.info(format!("hears {walker} no more"));
+            }
+        }
+        self.may_go |= context.receive(&self.present).next().is_some();
+        if self.may_go && x != self.to {
+            self.walked += 1;
+        }
+        let (walker, filler) = (context.name().to_owned(), "x".repeat(self.size as usize));
+        context.send(&self.own, Step { walker, at: Spot { x, y: 0 }, filler })?;
+        context.vote(Work::Open);
+        Ok(())
+    }
+}
+
+/// Lets walkers go.
+#[derive(Class)]
+#[class(name = "numbers.Starter", periodic)]
+pub struct Starter {
+    #[publishes(PRESENT)]
+    present: Publisher<Present>,
+}
+
+impl Component for Starter {
+    type Properties = saoms_api::Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if context.execution() == 0 {
+            context.send(&self.present, Present { reader: context.name().to_owned() })?;
+        }
+        Ok(())
+    }
+}
+
 saoms_api::plugin! {
-    classes: [Sender, Reader],
+    classes: [Sender, Reader, Walker, Starter],
 }

@@ -7,7 +7,10 @@ use proptest::prelude::*;
 use saoms_api::host::cdr;
 
 use super::lossy::MILLISECOND;
-use crate::network::exchange::wire::{Again, Alive, Covered, Enclosed, Envelope, Reads, Received, Sends, Welcome};
+use crate::network::exchange::wire::{
+    Again, Alive, Around, AroundState, CellChange, CellName, Covered, Enclosed, Envelope, InCell, KnownState, Look,
+    Reads, Received, Sends, Welcome,
+};
 use crate::network::exchange::{Exchange, OwnMessage, Settings};
 
 /// Numbers at the edges of what there is.
@@ -25,6 +28,9 @@ enum Said {
     Message(&'static str, Envelope),
     Again(Again),
     Covered(Covered),
+    Look(Look),
+    Around(Around),
+    Want(u8),
     Own(bool),
     Tick(u64),
 }
@@ -39,7 +45,15 @@ fn said() -> impl Strategy<Value = Said> {
                 name: "stranger".to_owned(),
                 number: number[0],
                 patience: number[1],
-                sends: vec![Sends { topic: topic.clone(), is_state, last: number[2], oldest: number[3] }],
+                sends: vec![Sends {
+                    topic: topic.clone(),
+                    is_state,
+                    last: number[2],
+                    oldest: number[3],
+                    by_cells: is_state && number[3] % 2 == 0,
+                    since: number[5],
+                    cells: vec![CellChange { x: 0, y: 0, last: number[6] }],
+                }],
                 reads: vec![Reads { topic: topic.clone() }],
                 received: vec![Received { program: number[4] % 4, topic: topic.clone(), next: number[5] }],
                 welcomes: vec![Welcome { reader: number[6] % 4, topic, first: number[7] }],
@@ -52,7 +66,9 @@ fn said() -> impl Strategy<Value = Said> {
         (0..4_u64, edge(), topic(), any::<bool>(), sizes).prop_map(|(program, number, topic, has_key, sizes)| {
             let enclosed = |size| Enclosed { size, to: String::new(), key: 1, has_key, sent: 0, cause: 0 };
             let (component, messages) = ("Stranger".to_owned(), sizes.into_iter().map(enclosed).collect());
-            Said::Message(topic, Envelope { program, number, component, schema: number % 2, messages })
+            let cell = InCell { x: 0, y: (number % 2) as i32, before: number / 2, has_left: has_key };
+            let cells = if number % 3 == 0 { Vec::new() } else { vec![cell, InCell { x: i32::MIN, ..cell }] };
+            Said::Message(topic, Envelope { program, number, component, schema: number % 2, messages, cells })
         });
     let again = (numbers(), topic()).prop_map(|(number, topic)| Again {
         reader: 1,
@@ -64,7 +80,33 @@ fn said() -> impl Strategy<Value = Said> {
         let (topic, first, last) = (topic.to_owned(), number[0], number[1]);
         Said::Covered(Covered { program, topic, first, last, numbers: number })
     });
+    let look = (numbers(), topic()).prop_map(|(number, topic)| {
+        let known = KnownState { component: "Own".to_owned(), number: number[1], ..KnownState::default() };
+        let cells = vec![CellName { x: 0, y: 0 }, CellName { x: i32::MAX, y: i32::MIN }];
+        Said::Look(Look { reader: 1, topic: topic.to_owned(), number: number[0], cells, known: vec![known] })
+    });
+    let around = (0..4_u64, numbers(), topic()).prop_map(|(program, number, topic)| {
+        let message = |number: &u64| AroundState {
+            number: *number,
+            component: "Stranger".to_owned(),
+            key: number % 3,
+            has_key: number.is_multiple_of(2),
+            ..AroundState::default()
+        };
+        Said::Around(Around {
+            program,
+            topic: topic.to_owned(),
+            number: number[0] % 8,
+            last: number[1],
+            cells: vec![CellName { x: 0, y: 0 }, CellName { x: 7, y: 7 }],
+            schema: number[2] % 2,
+            messages: number.iter().map(message).collect(),
+        })
+    });
     prop_oneof![
+        1 => look,
+        2 => around,
+        1 => (0..4_u8).prop_map(Said::Want),
         3 => alive,
         3 => message,
         1 => again.prop_map(Said::Again),
@@ -96,6 +138,14 @@ proptest! {
 }
                 Said::Again(again) => exchange.answer(&again),
                 Said::Covered(covered) => exchange.cover(&covered, now),
+                Said::Look(look) => exchange.show(&look),
+                Said::Around(around) => {
+                    exchange.see(around, now);
+                }
+                Said::Want(what) => {
+                    let cells = BTreeSet::from([(0, i32::from(what)), (i32::MIN, 0)]);
+                    exchange.want(&Arc::from("STATES"), Some(&cells).filter(|_| what > 0), now);
+                }
                 Said::Own(is_state) => exchange.send(OwnMessage {
                     topic: &Arc::from(if is_state { "STATES" } else { "EVENTS" }),
                     is_state,
@@ -105,6 +155,7 @@ proptest! {
                     sent: 0,
                     schema: 0,
                     cause: 0,
+                    place: is_state.then_some((0, now as i32)),
                     bytes: &[0; 1_000],
                 }),
                 Said::Tick(milliseconds) => {

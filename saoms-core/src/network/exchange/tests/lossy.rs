@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use saoms_api::host::cdr;
 
+use crate::bus::cell_of;
 use crate::network::exchange::call::{Outcome, OwnCall};
-use crate::network::exchange::{Action, Destination, Exchange, News, OwnMessage, Settings};
+use crate::network::exchange::{Action, Destination, Exchange, Keys, News, OwnMessage, Settings};
 
 pub(in crate::network::exchange) const MILLISECOND: u64 = 1_000_000;
 
@@ -62,6 +63,14 @@ pub(in crate::network::exchange) struct Lossy {
     /// Answers that programs give at their times.
     answers: BTreeMap<(u64, u64), (usize, u64, u64, u64)>,
     states: BTreeMap<(usize, Option<u64>), u64>,
+    /// The blocks of states with a place, by their senders and numbers.
+    places: BTreeMap<(usize, u64), (i32, i32)>,
+    /// What programs ask the network for, and what they are about to ask for, or no more.
+    subscribed: BTreeSet<(usize, String)>,
+    subscribing: BTreeMap<(u64, u64), (usize, String, bool)>,
+    /// Number of the messages of components that reached each program, and of those that were put.
+    pub(in crate::network::exchange) carried: BTreeMap<usize, u64>,
+    pub(in crate::network::exchange) put: u64,
     weather: Weather,
     chance: u64,
     now: u64,
@@ -81,6 +90,11 @@ impl Lossy {
             service_time: 0,
             answers: BTreeMap::new(),
             states: BTreeMap::new(),
+            places: BTreeMap::new(),
+            subscribed: BTreeSet::new(),
+            subscribing: BTreeMap::new(),
+            carried: BTreeMap::new(),
+            put: 0,
             weather,
             chance: seed | 1,
             now: 0,
@@ -119,6 +133,7 @@ impl Lossy {
         });
         exchange.read(&Arc::from("EVENTS"), false, schema);
         exchange.read(&Arc::from("STATES"), true, 0);
+        exchange.read(&Arc::from("PLACES"), true, 0);
         self.programs.push(Program {
             exchange,
             is_stopped: false,
@@ -126,17 +141,45 @@ impl Lossy {
             sent: BTreeMap::new(),
             told: Vec::new(),
         });
+        self.carry_out(number);
     }
 
     /// A program sends an event.
     pub(in crate::network::exchange) fn send(&mut self, program: usize, topic: &str) {
-        self.say(program, topic, false, None);
+        self.say(program, topic, false, None, None);
     }
 
     /// A program puts a state.
     pub(in crate::network::exchange) fn put(&mut self, program: usize, topic: &str, key: u64) {
-        let number = self.say(program, topic, true, Some(key));
+        let number = self.say(program, topic, true, Some(key), None);
         self.states.insert((program, Some(key)), number);
+    }
+
+    /// A program puts a state at a block, on the topic `PLACES`.
+    pub(in crate::network::exchange) fn put_at(&mut self, program: usize, key: u64, block: (i32, i32)) {
+        let number = self.say(program, "PLACES", true, Some(key), Some(block));
+        self.places.insert((program, number), block);
+    }
+
+    /// A program wants these cells of the topic `PLACES`, or all.
+    pub(in crate::network::exchange) fn want(&mut self, program: usize, cells: Option<&[(i32, i32)]>) {
+        let cells = cells.map(|cells| cells.iter().copied().collect());
+        self.programs[program].exchange.want(&Arc::from("PLACES"), cells.as_ref(), self.now);
+        self.carry_out(program);
+    }
+
+    /// The number of the last state with this key that a program has of another one, and the cell that it is in.
+    pub(in crate::network::exchange) fn has(
+        &self,
+        reader: usize,
+        sender: usize,
+        key: u64,
+    ) -> Option<(u64, (i32, i32))> {
+        let is_it = |one: &&Delivered| {
+            &*one.topic == "PLACES" && one.reader == reader && (one.sender, one.key) == (sender, Some(key))
+        };
+        let number = self.delivered.iter().filter(is_it).map(|one| one.number).next_back()?;
+        Some((number, cell_of(self.places[&(sender, number)])))
     }
 
     /// Number of the messages that a program has sent on a topic.
@@ -154,7 +197,7 @@ impl Lossy {
         self.programs[program].told.clone()
     }
 
-    fn say(&mut self, program: usize, topic: &str, is_state: bool, key: Option<u64>) -> u64 {
+    fn say(&mut self, program: usize, topic: &str, is_state: bool, key: Option<u64>, place: Option<(i32, i32)>) -> u64 {
         let sender = &mut self.programs[program];
         let number = sender.sent.entry(topic.to_owned()).or_default();
         *number += 1;
@@ -168,6 +211,7 @@ impl Lossy {
             sent: self.now,
             schema: 0,
             cause: 0,
+            place,
             bytes: &number.to_le_bytes(),
         });
         self.carry_out(program);
@@ -213,6 +257,13 @@ impl Lossy {
                 self.programs[server].exchange.reply(program, line, number, Ok(bytes));
                 self.carry_out(server);
             }
+            while let Some(entry) = self.subscribing.first_entry().filter(|entry| entry.key().0 <= self.now) {
+                let (program, keys, is_wanted) = entry.remove();
+                match is_wanted {
+                    true => self.subscribed.insert((program, keys)),
+                    false => self.subscribed.remove(&(program, keys)),
+                };
+            }
             while let Some(entry) = self.flying.first_entry().filter(|entry| entry.key().0 <= self.now) {
                 let packet = entry.remove();
                 self.arrive(&packet);
@@ -234,9 +285,12 @@ impl Lossy {
     fn carry_out(&mut self, program: usize) {
         for action in self.programs[program].exchange.take_actions() {
             match action {
+                Action::Subscribe(keys) => self.subscribe(program, &keys, true),
+                Action::Unsubscribe(keys) => self.subscribe(program, &keys, false),
                 Action::Put { to, bytes } => self.carry((program, to, bytes, None)),
                 Action::Send { to, frame } => {
                     let (bytes, envelope) = frame.encode();
+                    self.put += 1;
                     self.carry((program, to, bytes, Some(envelope)));
                 }
                 Action::Deliver { program: sender, topic, arrived } => {
@@ -271,6 +325,24 @@ impl Lossy {
         }
     }
 
+    /// A network hears later what a program asks it for.
+    fn subscribe(&mut self, program: usize, keys: &Keys, is_wanted: bool) {
+        let at = self.now + self.delay + self.random(self.weather.jitter + 1) * MILLISECOND;
+        // In the order of asking: it is one connection.
+        let last = self.subscribing.keys().map(|(at, _)| *at).max().unwrap_or_default();
+        self.count += 1;
+        self.subscribing.insert((at.max(last), self.count), (program, format!("{keys:?}"), is_wanted));
+    }
+
+    fn is_subscribed(&self, program: usize, topic: &Arc<str>, cell: Option<(i32, i32)>) -> bool {
+        let part = match cell {
+            Some(cell) => Keys::Cell(Arc::clone(topic), cell),
+            None => Keys::Elsewhere(Arc::clone(topic)),
+        };
+        let has = |keys: Keys| self.subscribed.contains(&(program, format!("{keys:?}")));
+        has(Keys::All(Arc::clone(topic))) || has(part)
+    }
+
     fn carry(&mut self, packet: Packet) {
         let repeats = self.random(100) < u64::from(self.weather.repeats);
         for _ in 0..1 + u64::from(repeats) {
@@ -289,11 +361,21 @@ impl Lossy {
             if reader == *sender || self.programs[reader].is_stopped {
                 continue;
             }
+            if let Destination::Topic(topic, _, cell) = to {
+                if !self.is_subscribed(reader, topic, *cell) {
+                    continue;
+                }
+                *self.carried.entry(reader).or_default() += 1;
+            }
             let (exchange, now) = (&mut self.programs[reader].exchange, self.now);
             let is_mine = |program: &u64| *program == reader as u64;
             match to {
-                Destination::Topic(topic, _) => {
+                Destination::Topic(topic, ..) => {
                     exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now);
+                }
+                Destination::Look(program) if is_mine(program) => exchange.show(&cdr::decode(bytes).unwrap()),
+                Destination::Around(program, _) if is_mine(program) => {
+                    exchange.see(cdr::decode(bytes).unwrap(), now);
                 }
                 Destination::Again(program, topic) if is_mine(program) => {
                     exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now);

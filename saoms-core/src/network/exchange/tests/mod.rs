@@ -1,5 +1,6 @@
 //! Programs on a network that loses, repeats and delays what it carries.
 
+mod cells;
 mod ending;
 mod hostile;
 pub(in crate::network::exchange) mod lossy;
