@@ -73,6 +73,7 @@ pub(super) fn run(program: &Program) -> Outcome<()> {
             limit: LIMIT,
             components: BTreeSet::from([name.clone()]),
             others: BTreeSet::new(),
+            memory: None,
         };
         let joined = Client::start(session, &port, member, Membership::default(), fleet);
         client = Some(joined.map_err(|error| StartError::Network { url: url.clone(), error })?);

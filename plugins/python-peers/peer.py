@@ -19,14 +19,14 @@ IN_CELL = message(x="int32", y="int32", before="uint64", has_left="bool")
 ENVELOPE = message(program="uint64", component="string", schema="uint64", number="uint64",
                    messages={"sequence": ENCLOSED}, cells={"sequence": IN_CELL})
 CHANGE = message(x="int32", y="int32", last="uint64")
-SENDS = message(topic="string", is_state="bool", last="uint64", oldest="uint64", by_cells="bool", since="uint64",
-                cells={"sequence": CHANGE})
+SENDS = message(topic="string", is_state="bool", last="uint64", oldest="uint64", before="uint64", by_cells="bool",
+                since="uint64", cells={"sequence": CHANGE})
 READS = message(topic="string")
 RECEIVED = message(program="uint64", topic="string", next="uint64")
 WELCOME = message(reader="uint64", topic="string", first="uint64")
-ALIVE = message(program="uint64", name="string", number="uint64", patience="uint64", sends={"sequence": SENDS},
-                reads={"sequence": READS}, received={"sequence": RECEIVED}, welcomes={"sequence": WELCOME},
-                vote="uint8", leaves="bool")
+ALIVE = message(program="uint64", origin="uint64", start="uint64", name="string", number="uint64", patience="uint64",
+                sends={"sequence": SENDS}, reads={"sequence": READS}, received={"sequence": RECEIVED},
+                welcomes={"sequence": WELCOME}, vote="uint8", leaves="bool")
 AGAIN = message(reader="uint64", topic="string", first="uint64", last="uint64")
 COVERED = message(program="uint64", topic="string", first="uint64", last="uint64", numbers={"sequence": "uint64"})
 
@@ -146,16 +146,16 @@ class Peer:
     def say_alive(self, leaves=False):
         self.sign += 1
         sends = [dict(topic=topic, is_state=one.is_state, last=one.last, oldest=min([one.last + 1, *one.kept]),
-                      by_cells=False, since=0, cells=[])
+                      before=0, by_cells=False, since=0, cells=[])
                  for topic, one in self.outgoing.items()]
         for one in sends:
             one["oldest"] = 1 if one["is_state"] else one["oldest"]
         received = [dict(program=program, topic=topic, next=one.next)
                     for (program, topic), one in self.incoming.items() if one.next]
         welcomes = [dict(reader=reader, topic=topic, first=first) for (reader, topic), first in self.needs.items()]
-        alive = dict(program=self.program, name=self.name, number=self.sign, patience=int(PATIENCE * 1000), sends=sends,
-                     reads=[dict(topic=topic) for topic in self.reads], received=received, welcomes=welcomes,
-                     vote=self.vote, leaves=leaves)
+        alive = dict(program=self.program, origin=self.program, start=0, name=self.name, number=self.sign,
+                     patience=int(PATIENCE * 1000), sends=sends, reads=[dict(topic=topic) for topic in self.reads],
+                     received=received, welcomes=welcomes, vote=self.vote, leaves=leaves)
         self.put("alive/" + self.own, encode(ALIVE, alive))
 
     def ask(self):

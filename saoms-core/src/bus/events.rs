@@ -73,6 +73,11 @@ impl EventLog {
         ((self.end() - reader.next).min(queue), queue)
     }
 
+    /// The number of the first message that a reader has not collected.
+    pub(super) fn read_up_to(&self, place: u32) -> u64 {
+        self.readers[place as usize].next
+    }
+
     /// True unless a reader has half of its queue to read.
     pub(super) fn has_room(&self) -> bool {
         let readers = (0..).zip(&self.readers).filter(|(_, reader)| reader.queue > 0);
@@ -88,7 +93,8 @@ impl EventLog {
         self.grown = self.grown.max(TaskProperties::default_queue(users) as u64);
     }
 
-    fn end(&self) -> u64 {
+    /// The number of the next message.
+    pub(super) fn end(&self) -> u64 {
         self.first + self.messages.len() as u64
     }
 

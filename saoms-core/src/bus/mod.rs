@@ -148,6 +148,18 @@ impl Bus {
         self.topics[self.read_by(subscription)].waiting(&subscription.reader)
     }
 
+    /// The number of the next message of an event topic.
+    pub fn event_end(&self, topic: TopicId) -> Option<u64> {
+        self.topics[topic.0 as usize].event_end()
+    }
+
+    /// The number of the first message of an event topic that a reader has not collected; `None` where it reads a copy
+    /// of the topic, or a region.
+    pub fn read_up_to(&self, subscription: &TopicReader) -> Option<u64> {
+        let main = subscription.topic.0 as usize;
+        (self.read_by(subscription) == main).then(|| self.topics[main].read_up_to(&subscription.reader)).flatten()
+    }
+
     /// The schema of the topic's messages, as text.
     pub fn schema(&self, topic: TopicId) -> &str {
         self.topics[topic.0 as usize].schema()

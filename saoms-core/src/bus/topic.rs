@@ -135,6 +135,20 @@ impl BusTopic {
         }
     }
 
+    pub(super) fn event_end(&self) -> Option<u64> {
+        match &self.store {
+            Store::Event(log) => Some(log.end()),
+            Store::State(_) => None,
+        }
+    }
+
+    pub(super) fn read_up_to(&self, reader: &ReadPosition) -> Option<u64> {
+        match (&self.store, reader) {
+            (Store::Event(log), ReadPosition::Event(place)) => Some(log.read_up_to(*place)),
+            _ => None,
+        }
+    }
+
     pub(super) fn kind(&self) -> TopicKind {
         match self.store {
             Store::State(_) => TopicKind::State,

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use saoms_api::Level;
 
 use super::control::{ControlRequest, Reply};
-use super::exchange::Arrived;
 use super::exchange::wire::{Request, Vote};
+use super::exchange::{Arrived, Remembered};
 use super::rights::Granted;
 
 /// A message of another program for the fleet.
@@ -45,6 +45,15 @@ pub trait Fleet: Send + 'static {
 
     /// Carries out a request of an operator, and answers it later. Does not wait.
     fn control(&self, request: ControlRequest, reply: Reply);
+
+    /// Marks the present moment.
+    fn mark(&self);
+
+    /// True once all that was delivered before the mark is executed and committed, or never will be.
+    fn has_passed_mark(&self) -> bool;
+
+    /// Changes what outlives the program, as a whole.
+    fn remember(&self, changes: Vec<Remembered>);
 
     /// The link is lost: no other program was heard for the patience of this one.
     fn lose(&self);

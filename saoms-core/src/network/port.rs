@@ -31,6 +31,8 @@ pub(crate) enum FromRun {
         is_state: bool,
         /// The hash of the schema.
         schema: u64,
+        /// The number of an event in the state folder.
+        number: Option<u64>,
         message: SharedMessage,
     },
     /// Components read a topic.

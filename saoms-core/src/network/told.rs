@@ -24,6 +24,16 @@ fn unheard(name: &str, components: &[Arc<str>]) -> String {
 pub(super) fn told(news: &News) -> (Level, String) {
     match news {
         News::Joined { name, .. } => (Level::Info, format!("program `{name}` is on the network")),
+        News::GoesOn { name, .. } => {
+            (Level::Info, format!("program `{name}` is on the network again, and goes on from its state"))
+        }
+        News::Older { name, topic, after } => (
+            Level::Warning,
+            format!(
+                "program `{name}` goes on from an older state, without {after} messages on topic `{topic}` that were received: it \
+                 has begun anew there"
+            ),
+        ),
         News::Left { name, .. } => (Level::Info, format!("program `{name}` has left the network")),
         News::Unreachable { name, components, .. } => (Level::Error, unheard(name, components)),
         News::Back { name, .. } => (Level::Info, format!("program `{name}` gives signs of life again")),
@@ -36,6 +46,13 @@ pub(super) fn told(news: &News) -> (Level, String) {
         News::Unreceived { name, topic, count } => (
             Level::Error,
             format!("program `{name}` has not received {count} messages on topic `{topic}`, and this program ends"),
+        ),
+        News::Later { name, topic, count } => (
+            Level::Warning,
+            format!(
+                "program `{name}` has not received {count} messages on topic `{topic}`: they stay in the state folder, and it \
+                 receives them when this program starts again"
+            ),
         ),
         News::Twice { component, name, .. } => (
             Level::Error,

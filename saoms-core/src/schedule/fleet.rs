@@ -164,6 +164,7 @@ impl RunningFleet {
             self.resume(NEVER);
         }
         drive::wait_until(&self.handle.shared, |_| false);
+        store_writer::wait_for_commits(&self.handle.shared);
     }
 
     /// Waits until the functions that stop hardware have returned, as long as components have to end.

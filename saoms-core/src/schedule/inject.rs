@@ -182,6 +182,18 @@ impl Injections {
         self.holds == 0 && self.waiting.len() == self.faults + self.commits
     }
 
+    /// Takes the commits out: components and the numbers of batches.
+    pub(super) fn take_commits(&mut self) -> Vec<(u32, u64)> {
+        let commits = self.waiting.extract_if(.., |_, due| matches!(due, Due::Commit { .. }));
+        let commits = commits.filter_map(|(_, due)| match due {
+            Due::Commit { component, number } => Some((component, number)),
+            _ => None,
+        });
+        let commits: Vec<(u32, u64)> = commits.collect();
+        self.commits -= commits.len();
+        commits
+    }
+
     pub(super) fn clear(&mut self) {
         self.waiting.clear();
         (self.faults, self.commits) = (0, 0);
@@ -291,7 +303,16 @@ pub(super) fn add_fault(
 
 /// Batches of components, with their numbers, are committed.
 pub(super) fn add_commits(shared: &Shared, batches: &[(u32, u64)]) {
-    for (component, number) in batches {
+    let mut engine = shared.lock();
+    if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
+        // What waited for it leaves the program: nothing takes effect here any more.
+        let now = shared.clock.now();
+        batches.iter().for_each(|(component, number)| engine.commit(*component, *number, now));
+        return shared.release(engine);
+    }
+    shared.release(engine);
+    // With a number of 0 it is nothing that somebody waits for.
+    for (component, number) in batches.iter().filter(|(_, number)| *number > 0) {
         add(shared, None, Due::Commit { component: *component, number: *number });
     }
 }

@@ -163,13 +163,15 @@ impl Networks {
                 door: Arc::clone(door),
             };
             let fleet = handle.use_network(&settings.url, &port, hooks);
+            let program = RandomState::new().hash_one(std::process::id());
             let member = Settings {
-                program: RandomState::new().hash_one(std::process::id()),
+                program,
                 name: self.name.clone(),
                 patience: u64::try_from(self.patience.as_nanos()).unwrap_or(u64::MAX),
                 limit: LIMIT,
                 components: components.clone(),
                 others,
+                memory: fleet.recall(program),
             };
             let client = Client::start(session, &port, member, membership, fleet);
             clients.push(client.map_err(|error| who.error(&error))?);

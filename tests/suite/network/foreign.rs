@@ -44,13 +44,15 @@ fn key() -> impl Strategy<Value = String> {
 
 /// A sign of life of a program that says what cannot be.
 fn alive() -> impl Strategy<Value = Vec<u8>> {
-    let numbers = prop::collection::vec(edge(), 8);
+    let numbers = prop::collection::vec(edge(), 11);
     let topic = prop_oneof![Just("NUMBERS"), Just("PRESENT"), Just("")];
     // A few programs, so that each says several things.
     (0..40_u64, numbers, topic, any::<bool>(), any::<bool>()).prop_map(|(program, number, topic, is_state, leaves)| {
         let topic = topic.to_owned();
         let alive = Alive {
             program,
+            origin: number[9] % 40,
+            start: number[10],
             name: "stranger".to_owned(),
             number: number[0],
             patience: number[1],
@@ -59,6 +61,7 @@ fn alive() -> impl Strategy<Value = Vec<u8>> {
                 is_state,
                 last: number[2],
                 oldest: number[3],
+                before: number[8],
                 ..Sends::default()
             }],
             reads: vec![Reads { topic: topic.clone() }],

@@ -18,6 +18,7 @@ mod programs;
 mod proxy;
 mod python;
 mod secrets;
+mod state;
 mod tls;
 mod together;
 

@@ -22,7 +22,7 @@ fn asked(programs: &Programs, arguments: &[&str], url: &str, more: &[&str]) -> O
 
 /// Runs a command that is accepted, and gives what it says.
 #[track_caller]
-fn accepted(programs: &Programs, arguments: &[&str]) -> String {
+pub(super) fn accepted(programs: &Programs, arguments: &[&str]) -> String {
     let done = asked(programs, arguments, &programs.url(programs.port), &[]);
     assert_eq!(done.status.code(), Some(0), "{}\n{}", text(&done), programs.printed());
     stdout(&done)

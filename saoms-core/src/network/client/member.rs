@@ -8,6 +8,7 @@ use saoms_api::Level;
 use saoms_api::host::{cdr, shown};
 
 use super::super::control::{Answer, Ask, Asked, Other, Requests};
+use super::super::exchange;
 use super::super::exchange::call::Outcome;
 use super::super::exchange::{Action, Destination, Exchange, Keys, News, OwnMessage, Settings};
 use super::super::fleet::{Fleet, FromNetwork, Membership};
@@ -48,6 +49,8 @@ pub(super) struct Member<F> {
     pub(super) fleet: F,
     /// Messages for which the fleet had no room.
     undelivered: VecDeque<FromNetwork>,
+    /// With a state folder, what was delivered before the mark that components are to pass.
+    marked: Vec<exchange::Delivered>,
     /// What the transport had no room for.
     unsent: VecDeque<Unsent>,
     start: Instant,
@@ -94,6 +97,7 @@ impl<F: Fleet> Member<F> {
             session: Some(session),
             fleet,
             undelivered: VecDeque::new(),
+            marked: Vec::new(),
             unsent: VecDeque::new(),
             start: Instant::now(),
             next: 0,
@@ -128,9 +132,23 @@ impl<F: Fleet> Member<F> {
         self.carry_out();
         self.grant();
         self.fleet.deliver(&mut self.undelivered);
+        self.confirm();
         self.agree(now);
         self.watch_link(now);
         self.requests.forget(now);
+    }
+
+    /// Lets others forget events that components have carried out.
+    fn confirm(&mut self) {
+        if !self.marked.is_empty() && self.fleet.has_passed_mark() {
+            self.exchange.note_done(std::mem::take(&mut self.marked));
+        }
+        if self.marked.is_empty() && self.undelivered.is_empty() {
+            self.marked = self.exchange.delivered();
+            if !self.marked.is_empty() {
+                self.fleet.mark();
+            }
+        }
     }
 
     /// Takes messages of a topic on the thread that brings them: to wake another one would take longer than all else.
@@ -262,7 +280,7 @@ impl<F: Fleet> Member<F> {
                 let answer = self.requests.answer(asker, answer, (self.program, &self.name), others.collect());
                 answer.into_iter().for_each(|answer| self.put_answer(asker, &answer));
             }
-            FromRun::Message { topic, mut component, to, is_state, schema, message } => {
+            FromRun::Message { topic, mut component, to, is_state, schema, number, message } => {
                 if let Some(told) = self.rights.as_mut().and_then(|rights| rights.write(&topic, &component)) {
                     self.fleet.tell(Level::Error, told);
                 }
@@ -281,6 +299,7 @@ impl<F: Fleet> Member<F> {
                     sent: u64::try_from(sent).unwrap_or(u64::MAX),
                     schema,
                     cause: message.header().cause.0,
+                    number,
                     bytes: message.bytes(),
                 });
             }
@@ -405,6 +424,7 @@ impl<F: Fleet> Member<F> {
                         ticket.fill(outcome);
                     }
                 }
+                Action::Remember(changes) => self.fleet.remember(changes),
                 Action::Tell(news) => {
                     if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
                         self.fleet.misses(name);
@@ -412,7 +432,7 @@ impl<F: Fleet> Member<F> {
                     let (level, text) = told(&news);
                     match &news {
                         News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
-                        News::Back { name, .. } | News::Left { name, .. } => {
+                        News::Back { name, .. } | News::GoesOn { name, .. } | News::Left { name, .. } => {
                             self.fleet.alert(UNREACHABLE, name, None);
                             self.fleet.tell(level, text);
                         }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::call::Outcome;
 use super::frame::Frame;
 use super::incoming::Arrived;
+use super::memory::{Memory, Remembered};
 use super::wire::Request;
 use crate::bus::Cell;
 
@@ -24,6 +25,8 @@ pub struct Settings {
     pub components: BTreeSet<String>,
     /// The names of programs without which no work is done: those of the other nodes of the fleet.
     pub others: BTreeSet<String>,
+    /// What it knows of its earlier starts, with a state folder.
+    pub memory: Option<Memory>,
 }
 
 /// Where something is put for.
@@ -116,6 +119,8 @@ pub enum Action {
         /// What came of it.
         outcome: Outcome,
     },
+    /// Change what outlives the program, as a whole.
+    Remember(Vec<Remembered>),
     /// Tell what happened.
     Tell(News),
 }
@@ -126,6 +131,10 @@ pub enum Action {
 pub enum News {
     /// A program of this name is there.
     Joined { program: u64, name: Arc<str> },
+    /// It was started again, and goes on from its state folder.
+    GoesOn { program: u64, name: Arc<str> },
+    /// It goes on from a state that is older than what was received on a topic: so many messages.
+    Older { name: Arc<str>, topic: Arc<str>, after: u64 },
     /// It ended.
     Left { program: u64, name: Arc<str> },
     /// It gives no sign of life; these components were heard of it.
@@ -138,6 +147,8 @@ pub enum News {
     Lost { program: u64, name: Arc<str>, topic: Arc<str>, count: u64 },
     /// So many events of this program, which ends, were not received by another one.
     Unreceived { name: Arc<str>, topic: Arc<str>, count: u64 },
+    /// So many events of this program, which ends, stay in its state folder for another one.
+    Later { name: Arc<str>, topic: Arc<str>, count: u64 },
     /// A component runs in two programs, of which one may be this one: its messages from this program are ignored.
     Twice { component: Arc<str>, program: u64, name: Arc<str> },
     /// A component begins anew in another program; so many of its messages came from the one before.
@@ -169,6 +180,8 @@ pub struct OwnMessage<'a> {
     pub cause: u64,
     /// The block of a message whose type has a place.
     pub place: Option<(i32, i32)>,
+    /// The number of an event in the state folder.
+    pub number: Option<u64>,
     /// The message.
     pub bytes: &'a [u8],
 }

@@ -28,22 +28,19 @@ impl Exchange {
             return;
         }
         self.pass(now);
-        let is_known = self.peers.contains_key(&program);
-        if !is_known {
-            if alive.leaves || self.peers.len() >= MOST_PROGRAMS {
-                return;
+        let is_first = self.peers.get(&program).is_none_or(|peer| peer.is_recalled);
+        if is_first && alive.leaves {
+            // One that is known from an earlier start of this program has left meanwhile.
+            if self.peers.contains_key(&program) {
+                self.remove_peer(program);
+                self.forget_received();
             }
-            self.unheard.remove(&alive.name);
-            let name = Arc::from(alive.name.as_str());
-            self.actions.push(Action::Tell(News::Joined { program, name }));
-            // Calls may wait for it, or for one before it.
-            self.calls_at = 0;
-            self.say_soon();
-        }
-        let peer = self.peers.entry(program).or_insert_with(|| Peer::new(&alive.name, now));
-        if alive.number <= peer.sign {
             return;
         }
+        if is_first && !self.meet(alive) {
+            return;
+        }
+        let Some(peer) = self.peers.get_mut(&program).filter(|peer| alive.number > peer.sign) else { return };
         peer.vote = Vote::of(alive.vote);
         (peer.sign, peer.heard, peer.patience) = (alive.number, now, alive.patience.saturating_mul(MILLISECOND));
         if std::mem::take(&mut peer.is_given_up) {
@@ -63,6 +60,33 @@ impl Exchange {
         if alive.leaves {
             self.remove(program);
         }
+    }
+
+    /// A program is heard first. False if it is not heard any further.
+    fn meet(&mut self, alive: &Alive) -> bool {
+        if self.peers.len() >= MOST_PROGRAMS {
+            return false;
+        }
+        let name: Arc<str> = alive.name.as_str().into();
+        let (program, is_recalled) = (alive.program, self.peers.contains_key(&alive.program));
+        if !is_recalled && alive.start != 0 && !self.succeed(alive) {
+            return false;
+        }
+        let now = self.now;
+        let goes_on = self.past.contains_key(&alive.origin);
+        let peer = self.peers.entry(program).or_insert_with(|| Peer::new(&alive.name, now));
+        (peer.name, peer.origin, peer.start) = (Arc::clone(&name), alive.origin, alive.start);
+        (peer.is_recalled, peer.is_reachable) = (false, true);
+        self.unheard.remove(&alive.name);
+        self.actions.push(Action::Tell(match goes_on {
+            true => News::GoesOn { program, name },
+            false => News::Joined { program, name },
+        }));
+        self.go_on(alive);
+        // Calls may wait for it, or for one before it.
+        self.calls_at = 0;
+        self.say_soon();
+        true
     }
 
     /// What another program says as a reader of this one.
@@ -131,6 +155,7 @@ impl Exchange {
     pub(super) fn sign_of_life(&mut self, leaves: bool) -> Alive {
         self.sign += 1;
         self.note_sign();
+        let memory = self.settings.memory.as_ref();
         let sends = self.outgoing.iter().map(|(topic, outgoing)| {
             let (since, cells) = outgoing.cells.as_ref().map(Cells::news).unwrap_or_default();
             Sends {
@@ -138,6 +163,7 @@ impl Exchange {
                 is_state: outgoing.is_state(),
                 last: outgoing.last,
                 oldest: outgoing.oldest(),
+                before: outgoing.before,
                 by_cells: outgoing.cells.is_some(),
                 since,
                 cells,
@@ -148,7 +174,7 @@ impl Exchange {
         for (program, peer) in &mut self.peers {
             for (topic, incoming) in &mut peer.incoming {
                 let is_state = self.reads.get(topic).is_some_and(|own| own.is_state);
-                if let Some(next) = incoming.say_received(is_state, is_full) {
+                if let Some(next) = incoming.say_received(is_state, memory.is_some(), is_full) {
                     received.push(Received { program: *program, topic: topic.to_string(), next });
                 }
             }
@@ -159,6 +185,8 @@ impl Exchange {
         });
         Alive {
             program: self.settings.program,
+            origin: memory.map_or(self.settings.program, |memory| memory.origin),
+            start: memory.map_or(0, |memory| memory.start),
             name: self.settings.name.clone(),
             number: self.sign,
             patience: self.settings.patience / MILLISECOND,
@@ -172,12 +200,7 @@ impl Exchange {
     }
 
     fn remove(&mut self, program: u64) {
-        if self.left.len() >= MOST_PROGRAMS {
-            self.left.pop_first();
-        }
-        self.left.insert(program);
-        self.calls_at = 0;
-        if let Some(peer) = self.peers.remove(&program) {
+        if let Some(mut peer) = self.remove_peer(program) {
             self.was_done |= peer.vote == Vote::Done;
             for (topic, incoming) in &peer.incoming {
                 if let Some(count) =
@@ -187,6 +210,7 @@ impl Exchange {
                     self.actions.push(Action::Tell(News::Lost { program, name, topic, count }));
                 }
             }
+            self.remember_past(program, &mut peer);
             self.actions.push(Action::Tell(News::Left { program, name: peer.name }));
             self.forget_received();
         }
@@ -196,7 +220,7 @@ impl Exchange {
 /// True if a sign of life is one that a program of a fleet says: who says others cannot make this one count beyond its
 /// numbers, or keep more than it has room for.
 fn is_sane(alive: &Alive) -> bool {
-    let sends = alive.sends.iter().flat_map(|sends| [sends.last, sends.oldest, sends.since]);
+    let sends = alive.sends.iter().flat_map(|sends| [sends.last, sends.oldest, sends.since, sends.before]);
     let cells = alive.sends.iter().flat_map(|sends| sends.cells.iter().map(|cell| cell.last));
     let welcomes = alive.welcomes.iter().map(|welcome| welcome.first);
     let received = alive.received.iter().map(|received| received.next);

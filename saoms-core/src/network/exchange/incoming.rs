@@ -35,6 +35,8 @@ pub(super) const MOST_WAITING: usize = 16_384;
 pub(super) struct Incoming {
     /// The number of the first message that was not received; 0: the sender has not said where this program begins.
     pub(super) next: u64,
+    /// The number of the first message that was not carried out: with a state folder, this is what the sender hears.
+    pub(super) done: u64,
     /// The number of the last message that the sender is known to have sent.
     pub(super) last: u64,
     /// Those that came before an earlier one. Of a state topic their content has been delivered.
@@ -122,8 +124,9 @@ impl Incoming {
 
     /// What a sign of life says of it: the number of the first message that may be missing, of those that concern what
     /// is read. `None` where that has been said: of a state topic nobody waits for it.
-    pub(super) fn say_received(&mut self, is_state: bool, is_full: bool) -> Option<u64> {
-        let next = self.around.as_ref().map_or(self.next, |around| around.next);
+    pub(super) fn say_received(&mut self, is_state: bool, has_folder: bool, is_full: bool) -> Option<u64> {
+        let next = if has_folder && !is_state { self.done } else { self.next };
+        let next = self.around.as_ref().map_or(next, |around| around.next);
         if next == 0 {
             return None;
         }
@@ -136,12 +139,17 @@ impl Incoming {
         (is_full || *times <= REPEATS).then_some(next)
     }
 
+    /// The sender was started again, and goes on with its numbers.
+    pub(super) fn go_on(&mut self) {
+        (self.ask_at, self.last, self.said) = (None, 0, (0, 0));
+    }
+
     /// The sender says where this program begins, once. Gives what can be delivered now.
     pub(super) fn welcome(&mut self, first: u64) -> Vec<Arrived> {
         if self.next != 0 {
             return Vec::new();
         }
-        self.next = first.max(1);
+        (self.next, self.done) = (first.max(1), first.max(1));
         self.waiting = self.waiting.split_off(&self.next);
         self.advance()
     }

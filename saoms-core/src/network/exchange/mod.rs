@@ -20,6 +20,7 @@ mod frame;
 mod hear;
 mod incoming;
 mod look;
+mod memory;
 mod outgoing;
 mod owners;
 mod peer;
@@ -39,6 +40,8 @@ pub use self::frame::Frame;
 pub use self::incoming::Arrived;
 use self::incoming::Incoming;
 use self::look::WantedCells;
+use self::memory::Past;
+pub use self::memory::{Delivered, KeptEvent, KnownReader, Memory, Remembered};
 use self::outgoing::{Kept, Outgoing, Sent};
 use self::owners::Owner;
 use self::peer::Peer;
@@ -77,6 +80,8 @@ pub struct Exchange {
     peers: BTreeMap<u64, Peer>,
     /// Programs that have left: what of them is still on its way is of no use.
     left: BTreeSet<u64>,
+    /// What was received of programs that may start again, by their first starts.
+    past: BTreeMap<u64, Past>,
     /// The program that each component runs in, and how many of its messages were delivered.
     owners: HashMap<String, Owner>,
     /// Whether this program sees work left.
@@ -109,13 +114,15 @@ pub struct Exchange {
 impl Exchange {
     /// A program that joins a network.
     pub fn new(settings: Settings) -> Exchange {
-        Exchange {
+        let memory = settings.memory.clone();
+        let mut exchange = Exchange {
             unheard: settings.others.clone(),
             settings,
             outgoing: BTreeMap::new(),
             reads: BTreeMap::new(),
             peers: BTreeMap::new(),
             left: BTreeSet::new(),
+            past: BTreeMap::new(),
             owners: HashMap::new(),
             vote: Vote::default(),
             was_done: false,
@@ -130,7 +137,13 @@ impl Exchange {
             drop_at: u64::MAX,
             signs: VecDeque::new(),
             actions: Vec::new(),
+        };
+        if let Some(memory) = memory {
+            exchange.recall(&memory);
+            // It is in the exchange now.
+            exchange.settings.memory = Some(Memory { events: BTreeMap::new(), readers: Vec::new(), ..memory });
         }
+        exchange
     }
 
     /// What the program has to do, in this order.
@@ -153,7 +166,7 @@ impl Exchange {
 
     /// A component sends a message.
     pub fn send(&mut self, message: OwnMessage<'_>) {
-        let OwnMessage { topic, is_state, component, to, key, sent, schema, cause, place, bytes } = message;
+        let OwnMessage { topic, is_state, component, to, key, sent, schema, cause, place, number, bytes } = message;
         if !self.outgoing.contains_key(topic) {
             self.outgoing.insert(Arc::clone(topic), Outgoing::new(is_state));
             // Readers that were heard before read it from its first message on.
@@ -161,8 +174,15 @@ impl Exchange {
         }
         let Some(outgoing) = self.outgoing.get_mut(topic) else { return };
         let (component, bytes) = (Arc::clone(component), bytes.into());
+        let number = number.map_or(outgoing.last + 1, |number| number.max(outgoing.last + 1));
+        if number > outgoing.last + 1 {
+            // Those before it found no room on their way here.
+            let count = number - 1 - outgoing.last + outgoing.forget_before(number);
+            outgoing.last = number - 1;
+            self.actions.push(Action::Tell(News::Overflow { topic: Arc::clone(topic), count }));
+        }
         let cells = outgoing.place(&(Arc::clone(&component), key), place.map(cell_of));
-        let sent = Sent { number: outgoing.last + 1, component, to, key, sent, schema, cause, bytes, cells };
+        let sent = Sent { number, component, to, key, sent, schema, cause, bytes, cells };
         if is_state || self.peers.values().any(|peer| peer.needs(topic).is_some()) {
             outgoing.keep(sent.clone());
         } else {
@@ -271,6 +291,7 @@ impl Exchange {
         self.drop_cells(now);
         let next = self.ask(now).min(self.look(now)).min(self.drop_at);
         if now >= self.sign_at {
+            self.remember();
             let alive = self.sign_of_life(false);
             self.put_alive(&alive);
             let quiet = self.settings.patience / 4;
@@ -334,10 +355,14 @@ impl Exchange {
     pub fn leave(&mut self) {
         let unreceived = self.lacking().map(|(peer, topic, count)| {
             let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
-            Action::Tell(News::Unreceived { name, topic, count })
+            Action::Tell(match self.settings.memory {
+                Some(_) => News::Later { name, topic, count },
+                None => News::Unreceived { name, topic, count },
+            })
         });
         let unreceived: Vec<Action> = unreceived.collect();
         self.actions.extend(unreceived);
+        self.remember();
         let alive = self.sign_of_life(true);
         self.put_alive(&alive);
     }
@@ -359,13 +384,16 @@ impl Exchange {
 
     /// True if other programs are known, and none of them gives a sign of life.
     pub fn hears_nobody(&self) -> bool {
-        !self.peers.is_empty() && self.peers.values().all(|peer| !peer.is_reachable)
+        let mut heard = self.peers.values().filter(|peer| !peer.is_recalled).peekable();
+        heard.peek().is_some() && heard.all(|peer| !peer.is_reachable)
     }
 
     /// Notes the present time.
     fn pass(&mut self, now: u64) {
         if self.now == 0 {
             self.begun = now;
+            // Who is known from an earlier start has its time from now on.
+            self.peers.values_mut().for_each(|peer| (peer.since, peer.heard) = (now, now));
         }
         self.now = self.now.max(now);
     }

@@ -64,6 +64,10 @@ pub(super) struct Outgoing {
     pub(super) size: usize,
     /// Of a state topic whose messages have a place, where they are.
     pub(super) cells: Option<Cells>,
+    /// The number of the last message of an earlier start.
+    pub(super) before: u64,
+    /// The number of the first event that may be in the state folder.
+    pub(super) stored: u64,
 }
 
 impl Outgoing {
@@ -72,7 +76,7 @@ impl Outgoing {
             true => Kept::States { newest: BTreeMap::new(), numbers: HashMap::new() },
             false => Kept::Events(VecDeque::new()),
         };
-        Outgoing { last: 0, kept, size: 0, cells: None }
+        Outgoing { last: 0, kept, size: 0, cells: None, before: 0, stored: 1 }
     }
 
     pub(super) fn is_state(&self) -> bool {
@@ -136,8 +140,7 @@ impl Outgoing {
     pub(super) fn between(&self, first: u64, last: u64) -> Box<dyn Iterator<Item = &Sent> + '_> {
         match &self.kept {
             Kept::Events(events) => {
-                let skipped = first.saturating_sub(self.oldest());
-                let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
+                let skipped = events.partition_point(|sent| sent.number < first);
                 Box::new(events.iter().skip(skipped).take_while(move |sent| sent.number <= last))
             }
             Kept::States { .. } if first > last => Box::new(std::iter::empty()),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::call::Served;
 use super::incoming::Incoming;
+use super::memory::KnownReader;
 use super::wire::Vote;
 
 /// A program is missed for long after so many times its patience.
@@ -14,6 +15,13 @@ const LONG: u64 = 10;
 #[derive(Debug)]
 pub(super) struct Peer {
     pub(super) name: Arc<str>,
+    /// The first program that had its state folder, and the number of its start; 0 without a state folder.
+    pub(super) origin: u64,
+    pub(super) start: u64,
+    /// True if it is known from an earlier start of this program, and was not heard since.
+    pub(super) is_recalled: bool,
+    /// What the state folder knows of it.
+    pub(super) known: Option<KnownReader>,
     /// The number of its last sign of life.
     pub(super) sign: u64,
     /// When it was heard first, and last.
@@ -48,6 +56,10 @@ impl Peer {
     pub(super) fn new(name: &str, now: u64) -> Peer {
         Peer {
             name: Arc::from(name),
+            origin: 0,
+            start: 0,
+            is_recalled: false,
+            known: None,
             sign: 0,
             since: now,
             heard: 0,

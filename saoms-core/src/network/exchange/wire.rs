@@ -62,6 +62,11 @@ pub struct Enclosed {
 pub struct Alive {
     /// The program.
     pub program: u64,
+    /// The program with whose numbers its events go on: the first one that had its state folder. Without one it is the
+    /// program itself.
+    pub origin: u64,
+    /// Greater than that of each earlier start with this state folder; 0 without one.
+    pub start: u64,
     /// Its name for people: the node, or the name of its composite.
     pub name: String,
     /// The number of this sign, from 1.
@@ -118,6 +123,8 @@ pub struct Sends {
     pub last: u64,
     /// The number of the first message that can be sent again.
     pub oldest: u64,
+    /// Of an event topic, the number of the last message of an earlier start whose numbers go on.
+    pub before: u64,
     /// True for a state topic whose messages are under the keys of cells.
     pub by_cells: bool,
     /// Cells that a message after this number concerned are in `cells`.

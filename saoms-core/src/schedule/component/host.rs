@@ -180,6 +180,10 @@ impl Host for ComponentHost<'_> {
                     self.part.sent_bytes += message.bytes().len();
                 }
                 self.may_send()?;
+                if self.shared.store.get().is_some() && self.spec().url().is_some() {
+                    // An event of a network is kept until others have received it.
+                    self.may_keep()?;
+                }
                 self.part.outbox.push((topic, message));
                 self.part.recorder.acted();
                 Ok(())
@@ -292,9 +296,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
-        if let Some(refusal) = self.shared.store.get().and_then(|queue| queue.refusal()) {
-            return Err(Failure::new(refusal));
-        }
+        self.may_keep()?;
         let part = &mut *self.part;
         let others = part.to_keep.iter().filter(|(other, _)| *other != key);
         let waiting: usize = others.filter_map(|(_, bytes)| bytes.as_ref()).map(|bytes| bytes.len()).sum();

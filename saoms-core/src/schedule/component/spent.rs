@@ -60,6 +60,12 @@ fn wrote_too_much() -> Failure {
 }
 
 impl ComponentHost<'_> {
+    /// Fails if the state folder takes nothing more.
+    pub(super) fn may_keep(&self) -> Result<(), Failure> {
+        let refusal = self.shared.store.get().and_then(|queue| queue.refusal());
+        refusal.map_or(Ok(()), |refusal| Err(Failure::new(refusal)))
+    }
+
     /// Fails if the component sends more than an execution may.
     #[inline]
     pub(super) fn may_send(&self) -> Result<(), Failure> {

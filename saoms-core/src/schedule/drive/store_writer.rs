@@ -1,18 +1,25 @@
 //! The thread that puts on the disk what components keep.
 
+use std::collections::BTreeSet;
 use std::io;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, PoisonError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use saoms_api::Level;
 
 use crate::schedule::inject::add_commits;
+use crate::schedule::networks::kept::url_of;
 use crate::schedule::os::thread::start_thread;
 use crate::schedule::shared::Shared;
 use crate::store::{Store, StoreEvents, StoreQueue, write};
 
 /// The kind and the subject of alerts about the store.
 const ALERT: (&str, &str) = ("file", "state");
+
+/// Time for which the end of a run waits for a disk.
+const LAST_COMMITS: Duration = Duration::from_secs(5);
 
 /// Tells the fleet what the thread has done.
 struct ToFleet(Arc<Shared>);
@@ -62,19 +69,38 @@ pub(crate) fn use_store(shared: &Arc<Shared>, store: Store) -> io::Result<()> {
     Ok(())
 }
 
-/// Tells of what a store has of components that the fleet does not have: it stays there.
+/// Tells of what a store has of components and networks that the fleet does not have: it stays there.
 pub(crate) fn note_unused(shared: &Shared) {
-    let unused: Vec<String> = {
+    let (urls, components): (BTreeSet<String>, Vec<String>) = {
         let engine = shared.lock();
-        let is_unknown = |name: &&Arc<str>| !engine.numbers.contains_key(&***name);
-        engine.found.components().filter(is_unknown).map(|name| format!("`{name}`")).collect()
+        let unknown = engine.found.components().filter(|name| !engine.numbers.contains_key(&***name));
+        let (of_networks, of_components): (Vec<_>, Vec<_>) = unknown.partition(|name| url_of(name).is_some());
+        let urls = of_networks.into_iter().filter_map(|name| url_of(name)).map(|url| format!("`{url}`"));
+        (urls.collect(), of_components.into_iter().map(|name| format!("`{name}`")).collect())
     };
-    if !unused.is_empty() {
+    if !components.is_empty() {
         let text = format!(
             "the state folder has what {} kept, and the fleet has no such component: it stays there",
-            unused.join(", ")
+            components.join(", ")
         );
         shared.note(Level::Warning, text);
+    }
+    if !urls.is_empty() {
+        let urls = urls.into_iter().collect::<Vec<_>>().join(", ");
+        let text =
+            format!("the state folder has events for {urls}, and the fleet is not on such a network: they stay there");
+        shared.note(Level::Warning, text);
+    }
+}
+
+/// Waits until messages have left that wait for the disk, as long as that has space.
+pub(crate) fn wait_for_commits(shared: &Shared) {
+    if shared.store.get().is_none() {
+        return;
+    }
+    let since = Instant::now();
+    while shared.look(|engine| engine.uncommitted > 0) && since.elapsed() < LAST_COMMITS {
+        sleep(Duration::from_millis(1));
     }
 }
 

@@ -9,6 +9,7 @@ use super::{Engine, RunPhase};
 use crate::bus::{Bus, TopicId};
 use crate::schedule::component::body::Part;
 use crate::schedule::component::stored::{Stored, StoredChange};
+use crate::schedule::networks::kept::NOBODY;
 use crate::store::{Batch, Change, Contents, StoreQueue};
 
 /// When what a component keeps is committed.
@@ -25,7 +26,7 @@ pub(crate) enum Commits {
 /// What a component kept in one execution, which is not committed yet.
 #[derive(Debug)]
 pub(crate) struct Uncommitted {
-    number: u64,
+    pub(crate) number: u64,
     /// Changes that take it back.
     before: Vec<StoredChange>,
     /// Messages of that execution, and of later ones that kept nothing.
@@ -66,13 +67,13 @@ fn thin_out(messages: &mut Vec<(TopicId, SharedMessage)>, bus: &Bus) {
 }
 
 impl Engine {
-    /// Keeps what an execution has kept.
+    /// Keeps what an execution has kept, with the events that it sends over a network: all of it, or nothing.
     #[cold]
-    pub(super) fn keep(&mut self, part: &mut Part, now: u64) {
+    pub(super) fn keep(&mut self, part: &mut Part, events: Vec<Change>, now: u64) {
         let Part { to_keep, stored, index, name, .. } = part;
         let change =
             |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
-        let changes: Vec<Change> = to_keep.iter().map(change).collect();
+        let changes: Vec<Change> = to_keep.iter().map(change).chain(events).collect();
         let before: Vec<StoredChange> = to_keep.drain(..).map(|change| stored.change(change)).collect();
         self.batches += 1;
         let number = self.batches;
@@ -117,8 +118,22 @@ impl Engine {
     /// What a component kept up to this batch is committed: the messages leave that waited for it.
     #[cold]
     pub(crate) fn commit(&mut self, index: u32, number: u64, now: u64) {
-        let slot = &mut self.slots[index as usize];
-        let name = Arc::clone(&slot.name);
+        let has_events = match index {
+            NOBODY => self.commit_outside(number),
+            _ => self.commit_of(index, number, now),
+        };
+        if matches!(self.last_commits, LastCommits::UpTo(last) if last <= number) {
+            self.last_commits = LastCommits::Over;
+            if has_events && self.phase == RunPhase::Running {
+                // They have to be read before the run ends.
+                self.settle(now);
+            }
+        }
+    }
+
+    /// Lets the messages of a component leave. True if some of them are events.
+    fn commit_of(&mut self, index: u32, number: u64, now: u64) -> bool {
+        let name = Arc::clone(&self.slots[index as usize].name);
         let mut has_events = false;
         while let Some(first) = self.slots[index as usize].uncommitted.pop_front_if(|first| first.number <= number) {
             self.uncommitted -= 1;
@@ -127,13 +142,7 @@ impl Engine {
                 self.send_all(index, &name, first.messages.into_iter(), first.settles, now);
             }
         }
-        if matches!(self.last_commits, LastCommits::UpTo(last) if last <= number) {
-            self.last_commits = LastCommits::Over;
-            if has_events && self.phase == RunPhase::Running {
-                // They have to be read before the run ends.
-                self.settle(now);
-            }
-        }
+        has_events
     }
 
     /// True if a run whose work is done need not wait for commits.
@@ -168,6 +177,7 @@ impl Engine {
             slot.is_cut_off |= !slot.uncommitted.is_empty();
             self.unsent += slot.uncommitted.drain(..).map(|one| one.messages.len() as u64).sum::<u64>();
         }
+        self.unsent += self.networks.kept.fail();
         (self.uncommitted, self.last_commits) = (0, LastCommits::Over);
         self.reasons.push(text.to_owned());
         self.end_if_done(now);
@@ -186,7 +196,7 @@ impl Engine {
         self.found.forget(&part.name);
         part.to_keep = part.stored.entries().keys().map(|key| (*key, None)).collect();
         if !part.to_keep.is_empty() {
-            self.keep(part, now);
+            self.keep(part, Vec::new(), now);
         }
     }
 

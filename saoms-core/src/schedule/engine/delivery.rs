@@ -37,8 +37,9 @@ impl Engine {
     #[inline]
     pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.record(part, now);
-        if !part.to_keep.is_empty() {
-            self.keep(part, now);
+        let events = if part.outbox.is_empty() { Vec::new() } else { self.events_to_keep(part) };
+        if !part.to_keep.is_empty() || !events.is_empty() {
+            self.keep(part, events, now);
         }
         if part.outbox.is_empty() {
             return;

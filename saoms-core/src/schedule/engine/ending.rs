@@ -38,6 +38,11 @@ impl Engine {
         self.cause = Some(cause);
         self.ended = (now, sys::monotonic());
         self.queue.clear();
+        if self.real {
+            // Messages that waited for these leave the program.
+            let commits = self.injections.take_commits();
+            commits.into_iter().for_each(|(component, number)| self.commit(component, number, now));
+        }
         self.injections.clear();
         self.roles.work.clear();
         self.wake = true;

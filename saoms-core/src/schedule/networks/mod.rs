@@ -2,7 +2,9 @@
 //! to the topics of this one.
 
 mod calls;
+mod caught_up;
 pub(super) mod elsewhere;
+pub(super) mod kept;
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
@@ -22,11 +24,14 @@ use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::hash::text_hash;
 use crate::network::control::{ControlRequest, Reply};
+use crate::network::exchange::Remembered;
 use crate::network::exchange::wire::{Request, Vote};
 use crate::network::{Fleet, FromNetwork, FromRun, Port};
 use crate::observe::{Notification, SentMessage};
 pub(super) use calls::interface_hash;
+use caught_up::Mark;
 use elsewhere::Elsewhere;
+use kept::KeptEvents;
 
 /// The network of a component that is on none.
 pub(super) const NO_NETWORK: u8 = u8::MAX;
@@ -45,6 +50,9 @@ pub(super) struct Networks {
     pub(super) elsewhere: Elsewhere,
     /// Wall clock of the start of the run, in nanoseconds since 1970: times are since then on a network.
     epoch: i64,
+    pub(super) kept: KeptEvents,
+    /// Of networks, what components have to do until others hear that it was received.
+    marks: HashMap<usize, Mark>,
     /// The schemas of topics, by the numbers of these.
     schemas: HashMap<TopicId, (u64, Option<Arc<Schema>>)>,
 }
@@ -54,6 +62,11 @@ impl Networks {
     pub(super) fn of(&self, spec: &ComponentSpec) -> u8 {
         let place = spec.url().and_then(|url| self.all.iter().position(|(known, _)| known == url));
         place.and_then(|place| u8::try_from(place).ok()).unwrap_or(NO_NETWORK)
+    }
+
+    /// The url of a network.
+    fn url(&self, network: u8) -> String {
+        self.all.get(usize::from(network)).map(|(url, _)| url.clone()).unwrap_or_default()
     }
 
     /// Where messages for a network are left.
@@ -89,20 +102,39 @@ impl Engine {
         topic: TopicId,
         message: &SharedMessage,
     ) {
+        let is_event = self.bus.kind(topic) == TopicKind::Event;
+        let number = if is_event { self.networks.kept.leaves(network, topic) } else { None };
+        let from_run = self.for_network(component, topic, message, number);
+        self.networks.waiting.push((network, from_run));
+    }
+
+    /// A message as a network takes it.
+    fn for_network(
+        &mut self,
+        component: &Arc<str>,
+        topic: TopicId,
+        message: &SharedMessage,
+        number: Option<u64>,
+    ) -> FromRun {
         let to = message.to().and_then(|to| self.name_of(to));
+        let (schema, message) = self.as_on_network(topic, message);
+        let is_state = self.bus.kind(topic) == TopicKind::State;
+        let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(component));
+        FromRun::Message { topic, component, to, is_state, schema, number, message }
+    }
+
+    /// The hash of the schema of a topic, and a message of it as it is on a network.
+    fn as_on_network(&mut self, topic: TopicId, message: &SharedMessage) -> (u64, SharedMessage) {
         let epoch = self.networks.epoch;
         let (schema, known) = self.schema_of(topic);
-        let (schema, message) = (*schema, dated(message, known.as_deref(), epoch));
-        let (topic, is_state) = (Arc::clone(self.bus.name(topic)), self.bus.kind(topic) == TopicKind::State);
-        let component = Arc::clone(component);
-        self.networks.waiting.push((network, FromRun::Message { topic, component, to, is_state, schema, message }));
+        (*schema, dated(message, known.as_deref(), epoch))
     }
 
     /// Leaves a message for all networks of the components that use its topic: one that comes from outside, or that
     /// tells of a component.
     pub(super) fn put_on_networks(&mut self, component: &Arc<str>, topic: TopicId, message: &SharedMessage) {
         for network in self.networks.topics.get(&topic).cloned().unwrap_or_default() {
-            self.put_on_network(network, component, topic, message);
+            self.put_outside(network, component, topic, message);
         }
     }
 
@@ -296,6 +328,18 @@ impl Fleet for NetworkedFleet {
             engine.begin_stop(EndCause::Done, now);
         }
         self.shared.release(engine);
+    }
+
+    fn mark(&self) {
+        self.mark();
+    }
+
+    fn has_passed_mark(&self) -> bool {
+        self.has_passed_mark()
+    }
+
+    fn remember(&self, changes: Vec<Remembered>) {
+        self.change_memory(changes);
     }
 
     fn tell(&self, level: Level, text: String) {

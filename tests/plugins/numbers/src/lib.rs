@@ -52,6 +52,12 @@ pub struct Sender {
 impl Component for Sender {
     type Properties = saoms_api::Own<Self>;
 
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let sent = context.kept().get(&0).and_then(|bytes| (*bytes).try_into().ok());
+        self.sent = sent.map_or(0, u32::from_le_bytes);
+        Ok(())
+    }
+
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         for Present { reader } in context.receive(&self.present) {
             self.heard.entry(reader.clone()).or_insert(context.execution());
@@ -61,6 +67,8 @@ impl Component for Sender {
             if self.sent == 0 {
                 context.info("begins");
             }
+            // It goes on from there with a state folder.
+            context.keep(0, &(self.sent + self.each.min(self.count - self.sent)).to_le_bytes())?;
             for _ in 0..self.each.min(self.count - self.sent) {
                 self.sent += 1;
                 let (sender, filler) = (context.name().to_owned(), "x".repeat(self.size as usize));
@@ -93,17 +101,35 @@ pub struct Reader {
     #[publishes(PRESENT)]
     present: Publisher<Present>,
     last: BTreeMap<String, u32>,
+    /// What it had received before it was started again: that may come again, at first.
+    before: BTreeMap<String, u32>,
     complete: u32,
 }
 
 impl Component for Reader {
     type Properties = saoms_api::Own<Self>;
 
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for bytes in context.kept().into_values() {
+            let text = String::from_utf8_lossy(bytes);
+            let (sender, last) = text.split_once(' ').unwrap_or_default();
+            self.last.insert(sender.to_owned(), last.parse().unwrap_or_default());
+        }
+        self.complete = self.last.values().filter(|last| **last == self.count).count() as u32;
+        self.before = self.last.clone();
+        Ok(())
+    }
+
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         if context.execution() == 0 {
             context.send(&self.present, Present { reader: context.name().to_owned() })?;
         }
         for Number { sender, number, filler } in context.receive(&self.numbers) {
+            if self.before.get(sender).is_some_and(|before| number <= before) {
+                context.info(format!("receives {number} of {sender} again"));
+                continue;
+            }
+            self.before.remove(sender);
             let last = self.last.entry(sender.clone()).or_default();
             if *number != *last + 1 {
                 context.warn(format!("wrong: received {number} of {sender}, expected {}", *last + 1));
@@ -116,6 +142,9 @@ impl Component for Reader {
                 context.info(format!("has received 1 to {number} of {sender}"));
                 self.complete += 1;
             }
+        }
+        for (place, (sender, last)) in (0..).zip(&self.last) {
+            context.keep(place, format!("{sender} {last}").as_bytes())?;
         }
         context.vote(if self.complete == self.senders { Work::Done } else { Work::Open });
         Ok(())

@@ -14,6 +14,7 @@ fn program(others: &[&str]) -> Exchange {
         limit: 1 << 20,
         components: BTreeSet::new(),
         others: others.iter().map(|name| (*name).to_owned()).collect(),
+        memory: None,
     })
 }
 

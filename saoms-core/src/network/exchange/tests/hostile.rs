@@ -36,12 +36,14 @@ enum Said {
 }
 
 fn said() -> impl Strategy<Value = Said> {
-    let numbers = || prop::collection::vec(edge(), 9);
+    let numbers = || prop::collection::vec(edge(), 12);
     let alive =
         (0..4_u64, numbers(), topic(), any::<[bool; 2]>()).prop_map(|(program, number, topic, [is_state, leaves])| {
             let topic = topic.to_owned();
             Said::Alive(Alive {
                 program,
+                origin: number[10] % 4,
+                start: number[11],
                 name: "stranger".to_owned(),
                 number: number[0],
                 patience: number[1],
@@ -53,6 +55,7 @@ fn said() -> impl Strategy<Value = Said> {
                     by_cells: is_state && number[3] % 2 == 0,
                     since: number[5],
                     cells: vec![CellChange { x: 0, y: 0, last: number[6] }],
+                    before: number[9],
                 }],
                 reads: vec![Reads { topic: topic.clone() }],
                 received: vec![Received { program: number[4] % 4, topic: topic.clone(), next: number[5] }],
@@ -126,6 +129,7 @@ proptest! {
             limit: 8 << 10,
             components: BTreeSet::from(["Own".to_owned()]),
             others: BTreeSet::new(),
+            memory: None,
         });
         exchange.read(&Arc::from("EVENTS"), false, 0);
         exchange.read(&Arc::from("STATES"), true, 0);
@@ -156,6 +160,7 @@ proptest! {
                     schema: 0,
                     cause: 0,
                     place: is_state.then_some((0, now as i32)),
+                    number: None,
                     bytes: &[0; 1_000],
                 }),
                 Said::Tick(milliseconds) => {

@@ -7,7 +7,9 @@ use saoms_api::host::cdr;
 
 use crate::bus::cell_of;
 use crate::network::exchange::call::{Outcome, OwnCall};
-use crate::network::exchange::{Action, Destination, Exchange, Keys, News, OwnMessage, Settings};
+use crate::network::exchange::{
+    Action, Destination, Exchange, KeptEvent, Keys, Memory, News, OwnMessage, Remembered, Settings,
+};
 
 pub(in crate::network::exchange) const MILLISECOND: u64 = 1_000_000;
 
@@ -42,8 +44,11 @@ pub(in crate::network::exchange) struct Program {
     pub(in crate::network::exchange) exchange: Exchange,
     pub(in crate::network::exchange) is_stopped: bool,
     component: Arc<str>,
+    name: String,
     sent: BTreeMap<String, u64>,
     told: Vec<String>,
+    /// Its state folder, if it has one.
+    pub(in crate::network::exchange) folder: Option<Memory>,
 }
 
 type Packet = (usize, Destination, Arc<[u8]>, Option<Arc<[u8]>>);
@@ -52,6 +57,8 @@ pub(in crate::network::exchange) struct Lossy {
     pub(in crate::network::exchange) programs: Vec<Program>,
     pub(in crate::network::exchange) delivered: Vec<Delivered>,
     pub(in crate::network::exchange) is_cut: bool,
+    /// True while no program with a state folder carries out what it receives.
+    pub(in crate::network::exchange) is_busy: bool,
     /// Calls that ran: the program that served them, the one that made them, their lines and numbers.
     pub(in crate::network::exchange) ran: Vec<(usize, u64, u64, u64)>,
     /// What came of calls: the program that made them, their lines and numbers.
@@ -84,6 +91,7 @@ impl Lossy {
             programs: Vec::new(),
             delivered: Vec::new(),
             is_cut: false,
+            is_busy: false,
             ran: Vec::new(),
             outcomes: Vec::new(),
             delay: 0,
@@ -122,7 +130,37 @@ impl Lossy {
 
     /// Another program joins under this name.
     pub(in crate::network::exchange) fn join_as(&mut self, name: &str, component: &str, schema: u64) {
+        self.add(name, component, schema, None);
+    }
+
+    /// Another program joins, with a state folder.
+    pub(in crate::network::exchange) fn join_with_folder(&mut self) {
         let number = self.programs.len();
+        self.add(&number.to_string(), &format!("Robot{number}"), 0, Some(Memory::default()));
+    }
+
+    /// Kills a program, and starts it again with its state folder. Gives its number from then on.
+    pub(in crate::network::exchange) fn start_again(&mut self, program: usize) -> usize {
+        self.start_again_from(program, self.programs[program].folder.clone())
+    }
+
+    /// The same from another state folder.
+    pub(in crate::network::exchange) fn start_again_from(&mut self, program: usize, folder: Option<Memory>) -> usize {
+        self.programs[program].is_stopped = true;
+        let Program { name, component, sent, .. } = &self.programs[program];
+        let (name, component, sent) = (name.clone(), Arc::clone(component), sent.clone());
+        self.add(&name, &component, 0, folder);
+        let again = self.programs.len() - 1;
+        self.programs[again].sent = sent;
+        again
+    }
+
+    fn add(&mut self, name: &str, component: &str, schema: u64, folder: Option<Memory>) {
+        let number = self.programs.len();
+        let folder = folder.map(|folder| match folder.start {
+            0 => Memory { origin: number as u64, start: 1, ..folder },
+            start => Memory { start: start + 1, ..folder },
+        });
         let mut exchange = Exchange::new(Settings {
             program: number as u64,
             name: name.to_owned(),
@@ -130,6 +168,7 @@ impl Lossy {
             limit: 256 << 10,
             components: BTreeSet::from([component.to_owned()]),
             others: BTreeSet::new(),
+            memory: folder.clone(),
         });
         exchange.read(&Arc::from("EVENTS"), false, schema);
         exchange.read(&Arc::from("STATES"), true, 0);
@@ -138,8 +177,10 @@ impl Lossy {
             exchange,
             is_stopped: false,
             component: Arc::from(component),
+            name: name.to_owned(),
             sent: BTreeMap::new(),
             told: Vec::new(),
+            folder,
         });
         self.carry_out(number);
     }
@@ -202,6 +243,15 @@ impl Lossy {
         let number = sender.sent.entry(topic.to_owned()).or_default();
         *number += 1;
         let number = *number;
+        let mut kept = None;
+        if let Some(folder) = sender.folder.as_mut().filter(|_| !is_state) {
+            // The folder has it before it leaves.
+            let events = folder.events.entry(Arc::from(topic)).or_default();
+            let next = events.last_key_value().map_or(1, |(last, _)| last + 1);
+            let (component, bytes) = (sender.component.to_string(), number.to_le_bytes().to_vec());
+            events.insert(next, KeptEvent { component, sent: self.now, bytes, ..KeptEvent::default() });
+            kept = Some(next);
+        }
         sender.exchange.send(OwnMessage {
             topic: &Arc::from(topic),
             is_state,
@@ -212,6 +262,7 @@ impl Lossy {
             schema: 0,
             cause: 0,
             place,
+            number: kept,
             bytes: &number.to_le_bytes(),
         });
         self.carry_out(program);
@@ -244,7 +295,12 @@ impl Lossy {
         loop {
             for program in 0..self.programs.len() {
                 if !self.programs[program].is_stopped {
-                    self.programs[program].exchange.tick(self.now);
+                    let exchange = &mut self.programs[program].exchange;
+                    exchange.tick(self.now);
+                    if !self.is_busy {
+                        let delivered = exchange.delivered();
+                        exchange.note_done(delivered);
+                    }
                     self.carry_out(program);
                 }
             }
@@ -305,15 +361,22 @@ impl Lossy {
                     self.answers.insert((self.now + self.service_time, self.count), answer);
                 }
                 Action::Answered { line, number, outcome } => self.outcomes.push((program, line, number, outcome)),
+                Action::Remember(changes) => {
+                    let folder = self.programs[program].folder.as_mut().unwrap();
+                    changes.into_iter().for_each(|change| remember(folder, change));
+                }
                 Action::Tell(news) => {
                     let line = match news {
                         News::Joined { program, .. } => format!("Joined {program}"),
+                        News::GoesOn { program, .. } => format!("GoesOn {program}"),
+                        News::Older { name, topic, after } => format!("Older {name} {topic} {after}"),
                         News::Left { program, .. } => format!("Left {program}"),
                         News::Unreachable { program, .. } => format!("Unreachable {program}"),
                         News::Back { program, .. } => format!("Back {program}"),
                         News::GivenUp { program, .. } => format!("GivenUp {program}"),
                         News::Lost { program, topic, count, .. } => format!("Lost {program} {topic} {count}"),
                         News::Unreceived { name, topic, count } => format!("Unreceived {name} {topic} {count}"),
+                        News::Later { name, topic, count } => format!("Later {name} {topic} {count}"),
                         News::Twice { component, program, .. } => format!("Twice {component} {program}"),
                         News::Anew { component, program, after, .. } => format!("Anew {component} {program} {after}"),
                         News::Differs { program, topic, .. } => format!("Differs {program} {topic}"),
@@ -393,5 +456,19 @@ impl Lossy {
             }
             self.carry_out(reader);
         }
+    }
+}
+
+fn remember(folder: &mut Memory, change: Remembered) {
+    match change {
+        Remembered::Forget { topic, first, end } => {
+            let events = folder.events.get_mut(&topic).unwrap();
+            events.retain(|number, _| !(first..end).contains(number));
+        }
+        Remembered::Reader(reader) => {
+            folder.readers.retain(|one| one.program != reader.program);
+            folder.readers.push(reader);
+        }
+        Remembered::NoReader { program } => folder.readers.retain(|one| one.program != program),
     }
 }

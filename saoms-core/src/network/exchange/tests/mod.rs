@@ -4,6 +4,7 @@ mod cells;
 mod ending;
 mod hostile;
 pub(in crate::network::exchange) mod lossy;
+mod memory;
 
 use std::collections::BTreeMap;
 
