@@ -39,6 +39,7 @@ pub(super) fn run(program: &Program) -> Outcome<()> {
     let settings = SessionSettings {
         url: url.clone(),
         listen: is_router,
+        peer: None,
         account: None,
         users: Vec::new(),
         access: Vec::new(),

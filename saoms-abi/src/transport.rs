@@ -41,6 +41,7 @@ pub struct TransportTable {
     /// | --- | --- |
     /// | `url` | where the network is, as the composite says it |
     /// | `listen` | true: this program is the network's router, and listens at the url |
+    /// | `peer` | the name of this program, where the url is `peers://NAME=host:port,NAME=host:port`: it listens at its address, and reaches the others at theirs, without a router; may be missing |
     /// | `user`, `password` | of the user as which the program joins; may be missing |
     /// | `users` | of a listener: the users that it accepts, each with `user` and `password`; where it is missing, everybody is accepted |
     /// | `access` | of a listener: what each `user` may `put` and `subscribe`, lists of keys; where it is missing, everything |

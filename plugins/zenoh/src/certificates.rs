@@ -28,6 +28,10 @@ pub(super) fn judge(settings: &Settings) -> Vec<Fault> {
     if settings.listen && certificate.is_none() {
         faults.push(("certificate", "a broker with TLS needs a certificate and its key".to_owned()));
     }
+    if settings.of_peers().is_some() && (ca.is_none() || certificate.is_none()) {
+        let text = "peers with TLS recognise each other by certificates: give `tlsCa`, `tlsCertificate` and `tlsKey`";
+        faults.push(("url", text.to_owned()));
+    }
     let mut read = |setting, path: &Option<String>| match certificates(path.as_ref()?) {
         Ok(found) => Some(found),
         Err(text) => {

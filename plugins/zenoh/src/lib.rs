@@ -1,7 +1,9 @@
 //! The transport over Zenoh.
 //!
 //! A url `host:port` or `tcp/host:port` is TCP, `tls/host:port` is TLS. The program that listens is a router; the
-//! others are its clients. No multicast, no gossip: nothing is heard that the url does not name.
+//! others are its clients. A url `peers://NAME=host:port,NAME=host:port`, or `peers+tls://`, names all programs: each
+//! listens at its own address, and the later ones connect to those before them. No multicast, no gossip: nothing is
+//! heard that the url does not name.
 
 mod causes;
 mod certificates;
@@ -22,7 +24,7 @@ use self::settings::Settings;
 const TEXT: &str = concat!(
     r#"{"saoms":"transport","abi":1,"package":"saoms-zenoh","version":""#,
     env!("CARGO_PKG_VERSION"),
-    r#"","schemes":["","tcp","tls"],"entry":"saoms_transport_zenoh"}"#
+    r#"","schemes":["","tcp","tls","peers","peers+tls"],"entry":"saoms_transport_zenoh"}"#
 );
 
 #[used]

@@ -91,13 +91,14 @@ impl Session {
     /// Joins a network, or opens one.
     pub(super) fn open(settings: Settings, events: TransportEvents) -> Result<Session, Failure> {
         let endpoint = settings.endpoint();
-        if !settings.listen {
+        let is_client = !settings.listen && settings.of_peers().is_none();
+        if is_client {
             probe(settings.address())?;
             causes::listen(&endpoint);
         }
         let prepared = settings.prepare()?;
         let zenoh = zenoh::open(prepared.config.clone()).wait().map_err(|error| {
-            if !settings.listen {
+            if is_client {
                 return causes::failure(&settings, &causes::last(&endpoint).unwrap_or_default());
             }
             // Behind its words, Zenoh names a line of its source.
@@ -114,7 +115,6 @@ impl Session {
                 () => text.to_owned(),
             })
         })?;
-        let is_client = !settings.listen;
         let link = Mutex::new((true, String::new()));
         let program = Arc::new(Program {
             events: RwLock::new(Some(events)),

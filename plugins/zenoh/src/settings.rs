@@ -21,6 +21,8 @@ pub(super) struct Settings {
     pub(super) url: String,
     #[serde(default)]
     pub(super) listen: bool,
+    /// The name of this program among peers; none: it is reached by nobody, and reaches all.
+    peer: Option<String>,
     pub(super) user: Option<String>,
     password: Option<String>,
     #[serde(default)]
@@ -70,6 +72,22 @@ impl Settings {
         }
     }
 
+    /// Where this program listens and what it connects to, if the url names all programs. Of two programs the later one
+    /// connects to the other one: two links between them would be one too many.
+    pub(super) fn of_peers(&self) -> Option<(Option<String>, Vec<String>)> {
+        let (scheme, list) = self.url.split_once("://")?;
+        let scheme = match scheme {
+            "peers" => "tcp",
+            "peers+tls" => "tls",
+            _ => return None,
+        };
+        let named = list.split(',').filter_map(|peer| peer.split_once('='));
+        let named: Vec<(&str, String)> = named.map(|(name, address)| (name, format!("{scheme}/{address}"))).collect();
+        let own = named.iter().position(|(name, _)| Some(*name) == self.peer.as_deref());
+        let others = named.iter().take(own.unwrap_or(named.len())).map(|(_, endpoint)| endpoint.clone()).collect();
+        Some((own.map(|own| named[own].1.clone()), others))
+    }
+
     /// Host and port.
     pub(super) fn address(&self) -> &str {
         self.url.split_once("://").map_or(&self.url, |(_, rest)| rest)
@@ -77,11 +95,14 @@ impl Settings {
 
     /// True if the connection is encrypted.
     pub(super) fn is_tls(&self) -> bool {
-        self.url.starts_with("tls://")
+        self.url.starts_with("tls://") || self.url.starts_with("peers+tls://")
     }
 
     /// What Zenoh cannot take: the setting and why.
     pub(super) fn unfit(&self) -> Option<(&'static str, String)> {
+        if self.of_peers().is_some() && self.user.is_some() {
+            return Some(("user", "peers know no users: they recognise each other by certificates".to_owned()));
+        }
         let own = self.user.iter().zip(&self.password).map(|(user, password)| ("user", user, password));
         let all = own.chain(self.users.iter().map(|one| ("users", &one.user, &one.password)));
         for (setting, user, password) in all {
@@ -108,12 +129,27 @@ impl Settings {
         let mut set = |key: &str, value: Value| {
             config.insert_json5(key, &value.to_string()).map_err(|error| Failure::failed(format!("{key}: {error}")))
         };
-        let (mode, here) = if self.listen { ("router", "listen") } else { ("client", "connect") };
+        let peers = self.of_peers();
+        let (mode, here) = match () {
+            () if peers.is_some() => ("peer", "listen"),
+            () if self.listen => ("router", "listen"),
+            () => ("client", "connect"),
+        };
         set("mode", json!(mode))?;
         set("listen/endpoints", json!([]))?;
-        set(&format!("{here}/endpoints"), json!([self.endpoint()]))?;
-        if !self.listen {
+        if let Some((own, others)) = &peers {
+            set("listen/endpoints", json!(own.iter().collect::<Vec<_>>()))?;
+            set("connect/endpoints", json!(others))?;
+            // They may start later.
+            set("connect/timeout_ms", json!(-1))?;
+            set("connect/exit_on_failure", json!(false))?;
+        } else {
+            set(&format!("{here}/endpoints"), json!([self.endpoint()]))?;
+        }
+        if peers.is_none() && !self.listen {
             set("connect/timeout_ms", json!(PATIENCE))?;
+        }
+        if peers.is_some() || !self.listen {
             set("connect/retry", json!({"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}))?;
         }
         set("scouting/multicast/enabled", json!(false))?;
@@ -136,15 +172,18 @@ impl Settings {
         }
         if self.is_tls() {
             let Tls { ca, certificate, key } = &self.tls;
-            // A router asks for certificates, a client shows its own.
+            // A router asks for certificates, a client shows its own, and a peer does both.
             let is_mutual = if self.listen { ca.is_some() } else { certificate.is_some() };
             set("transport/link/tls/enable_mtls", json!(is_mutual))?;
             if let Some(ca) = ca {
                 set("transport/link/tls/root_ca_certificate", json!(ca))?;
             }
             if let (Some(certificate), Some(key)) = (certificate, key) {
-                set(&format!("transport/link/tls/{here}_certificate"), json!(certificate))?;
-                set(&format!("transport/link/tls/{here}_private_key"), json!(key))?;
+                let both = ["listen", "connect"].into_iter().filter(|side| peers.is_some() || *side == here);
+                for side in both {
+                    set(&format!("transport/link/tls/{side}_certificate"), json!(certificate))?;
+                    set(&format!("transport/link/tls/{side}_private_key"), json!(key))?;
+                }
             }
         }
         Ok(Prepared { config, _users: users })

@@ -206,6 +206,7 @@ codes! {
     ACCESS = "S4027" Error "access": "The access of users to topics cannot be enforced as it is written.";
     NETWORK_FILE = "S4028" Error "network-file": "A file or an environment variable that a network needs is missing or wrong. Reported by `saoms run`.";
     UNPROTECTED_NETWORK = "S4029" Warning "unprotected-network" [OutlivesExpansion]: "Messages leave this machine without protection: everybody in the network can read and change them.";
+    PEER_MISSING = "S4030" Error "peer-missing": "A `url` of peers does not name a node that has a component on this network.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

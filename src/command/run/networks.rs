@@ -14,7 +14,7 @@ use saoms_api::Level;
 use saoms_api::host::format_duration;
 use saoms_core::network::exchange::Settings;
 use saoms_core::network::rights::Granted;
-use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession};
+use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession, peers};
 use saoms_core::network::{Client, Membership, Port};
 use saoms_core::schedule::{Handle, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
@@ -100,9 +100,20 @@ impl Networks {
         networks.patience =
             periods.max().map_or(LEAST_PATIENCE, |period| (3 * period).clamp(LEAST_PATIENCE, LONGEST_PATIENCE));
         let mut is_missing = false;
-        let mut resolver = Resolver { assembly, faults: Vec::new() };
+        let name = networks.name.clone();
+        let mut resolver = Resolver { assembly, name: &name, faults: Vec::new() };
         for (url, described) in settings::described(assembly) {
             let listen = described.router.is_some();
+            if let Some(named) = peers(&url) {
+                if arguments.node.is_none() && assembly.nodes().len() > 1 {
+                    // All peers are in this program, which is told.
+                    continue;
+                }
+                let named: Vec<&str> = named.map(|(name, _)| name).collect();
+                if !named.contains(&name.as_str()) {
+                    resolver.unnamed(&described, &named);
+                }
+            }
             match Transport::find(&url, &arguments.fleet.plugins.plugins) {
                 Ok(transport) => {
                     let settings = resolver.settings(&url, &described);

@@ -13,6 +13,7 @@ mod links;
 mod nodes;
 mod operators;
 mod passwords;
+mod peers;
 mod places;
 mod programs;
 mod proxy;

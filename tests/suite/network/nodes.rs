@@ -75,6 +75,11 @@ fn the_airport_runs_in_programs_by_its_nodes() {
     }
 }
 
+/// A component at a node, in a composite with `s` for the prefix of its attributes.
+pub(super) fn at_node(node: &str, component: String) -> String {
+    component.replacen("<component ", &format!("<component s:node=\"{node}\" "), 1)
+}
+
 /// Writes a fleet with a broker, a scenario and a master in `control`, a zone in `traffic`, and robots: each with its
 /// node and its period.
 pub(super) fn write_fleet(programs: &Programs, scenario: &str, robots: &[(&str, &str)]) {
@@ -83,17 +88,16 @@ pub(super) fn write_fleet(programs: &Programs, scenario: &str, robots: &[(&str, 
         let usual = [("ID", name), ("period", period), ("url", &url)];
         component(name, class, &[&usual, more].concat())
     };
-    let at = |node: &str, text: String| text.replacen("<component ", &format!("<component s:node=\"{node}\" "), 1);
     let port = programs.port.to_string();
     let broker = [("IP", "127.0.0.1"), ("transport", "relay"), ("port", &port)];
     let map = "...........\n".repeat(11);
     let mut components = component("Broker", "unibg.robotics.tca.MessageBrokerImpl", &broker)
         + &task("Environment", "saoms.Environment", "100", &[("scenario", scenario)])
         + &task("Master", "saoms.MasterEnvironment", "100", &[])
-        + &at("traffic", task("Zone", "saoms.Zone", "100", &[("map", &map)]));
+        + &at_node("traffic", task("Zone", "saoms.Zone", "100", &[("map", &map)]));
     let battery = [("dischargePerBlock", "1"), ("chargePerSecond", "10")];
     for ((node, period), robot) in robots.iter().zip(1..) {
-        components += &at(node, task(&format!("Robot{robot}"), "saoms.Robot", period, &battery));
+        components += &at_node(node, task(&format!("Robot{robot}"), "saoms.Robot", period, &battery));
     }
     programs.write(
         "fleet.composite",

@@ -33,6 +33,13 @@ pub fn scheme(url: &str) -> &str {
     url.split_once("://").map_or("", |(scheme, _)| scheme)
 }
 
+/// The programs of a network without a router, each with its name and where it listens, if its url names them.
+pub fn peers(url: &str) -> Option<impl Iterator<Item = (&str, &str)>> {
+    let (scheme, list) = url.split_once("://")?;
+    let named = list.split(',').map(|peer| peer.split_once('=').unwrap_or(("", peer)));
+    matches!(scheme, "peers" | "peers+tls").then_some(named)
+}
+
 impl Transport {
     /// The transport for a url: from the places that the user named (libraries or folders), then from where libraries
     /// lie beside the program.

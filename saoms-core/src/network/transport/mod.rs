@@ -5,7 +5,7 @@ mod library;
 mod session;
 
 pub use error::TransportError;
-pub use library::{Transport, TransportInfo, scheme};
+pub use library::{Transport, TransportInfo, peers, scheme};
 pub use session::{
     Account, Delivered, Opened, Receiver, SessionSettings, SettingFault, TlsFiles, TransportSession, UserKeys,
 };

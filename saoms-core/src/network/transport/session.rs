@@ -16,6 +16,9 @@ pub struct SessionSettings {
     pub url: String,
     /// True for its router, which listens there.
     pub listen: bool,
+    /// The name of the program, for a network whose url names all its programs, and that has no router.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peer: Option<String>,
     /// The user as which a program joins.
     #[serde(flatten)]
     pub account: Option<Account>,

@@ -9,7 +9,7 @@ use crate::assembly::{TaskProperties, on_bus};
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
-use crate::check::tasks::broker_address::{fault, host_and_port, ip, is_loopback, is_plain};
+use crate::check::tasks::broker_address::{fault, host_and_port, ip, is_in_clear, is_loopback, is_plain, peers};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::source::Location;
 
@@ -23,6 +23,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], report: &m
     let faulty = networks.routers.iter().filter(|(place, router)| networks.router(*place, router, report));
     let faulty: Vec<&str> = faulty.map(|(_, router)| router.url.as_str()).collect();
     networks.protection(report);
+    networks.peers(report);
     networks.shared_ports(report);
     networks.unserved(&faulty, report);
     networks.differences(report);
@@ -128,7 +129,8 @@ impl<'n, 'a> Networks<'n, 'a> {
                 first("tlsKey", |task| task.tls_key.is_some()),
             );
             let files = first("tlsCa", |task| task.tls_ca.is_some()).or(pair.0).or(pair.1);
-            if tls_files(url, files, pair, report) || is_loopback(url) || !is_plain(url) {
+            let is_told = tls_files(url, files, pair, report);
+            if is_told || is_loopback(url) || peers(url).is_some() || !is_plain(url) {
                 continue;
             }
             let at = self.at(*place, "url");
@@ -151,6 +153,48 @@ impl<'n, 'a> Networks<'n, 'a> {
                 "write {}, and give the broker `transport` tls and certificates: see docs/security.md",
                 quoted(&tls)
             )));
+        }
+    }
+
+    /// Reports what is wrong with the networks without a broker: other machines reach them, or a node is not named.
+    fn peers(&self, report: &mut Report<'_>) {
+        let mut seen: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for (place, url, task) in &self.tasks {
+            let Some(named) = peers(url) else { continue };
+            let is_first = !seen.contains_key(url);
+            let nodes = seen.entry(url).or_default();
+            if is_first && !is_loopback(url) {
+                let of_network = || self.tasks.iter().filter(|(_, known, _)| known == url).map(|(.., task)| task);
+                let has = |is: fn(&TaskProperties) -> bool| of_network().any(|task| is(task));
+                let is_mutual = has(|task| task.tls_ca.is_some()) && has(|task| task.tls_certificate.is_some());
+                if is_in_clear(url) || !is_mutual {
+                    let message = "other machines can reach these peers, which do not ask for certificates";
+                    let one = Diagnostic::new(&codes::OPEN_BROKER, self.at(*place, "url"), message);
+                    report.push(one.help(
+                        "write `peers+tls://`, and give `tlsCa`, `tlsCertificate` and `tlsKey`: see docs/security.md",
+                    ));
+                }
+            }
+            if task.user.is_some() && is_first {
+                let message = "peers know no users: none of them is the broker that would ask for one";
+                let one = Diagnostic::new(&codes::CREDENTIALS, self.at(*place, "user"), message);
+                report.push(one.severity(Severity::Error).help(
+                    "leave `user` and its password out; peers recognise each other by certificates, with `peers+tls://`",
+                ));
+            }
+            let node = self.fleet.members[*place].node.as_str();
+            let names: Vec<&str> = named.map(|(name, _)| name).collect();
+            if node.is_empty() || nodes.contains(&node) || names.contains(&node) {
+                continue;
+            }
+            nodes.push(node);
+            let at = self.at(*place, "url");
+            let message = format!("node {} is not among the peers of this network", quoted(node));
+            let one = Diagnostic::new(&codes::PEER_MISSING, at, message);
+            report.push(one.help(match nearest(node, names.iter().copied()) {
+                Some(near) => format!("write {} in place of {}", quoted(node), quoted(near)),
+                None => format!("add `,{node}=host:port`, with the address at which its program listens"),
+            }));
         }
     }
 
@@ -219,6 +263,9 @@ impl<'n, 'a> Networks<'n, 'a> {
 
     /// True if a broker of the fleet serves a url. Names of this machine are known alone: others may mean it, too.
     fn is_served(&self, url: &str) -> bool {
+        if peers(url).is_some() {
+            return true;
+        }
         let serves =
             |router: &Router| router.url == url || collide(&router.url, url) && is_same_transport(&router.url, url);
         self.routers.iter().any(|(_, router)| serves(router))
@@ -342,11 +389,17 @@ fn tls_files(
     let Some(first) = first else { return false };
     let both = "give both: the key shows that the certificate is one's own";
     let (at, message, help) = match pair {
-        _ if is_plain(url) => (
-            first,
-            format!("the files for TLS are not used: {} is without TLS", quoted(url)),
-            format!("name the network {}, or leave them out", quoted(&format!("tls://{url}"))),
-        ),
+        _ if is_in_clear(url) => {
+            let named = match url.strip_prefix("peers://") {
+                Some(list) => format!("peers+tls://{list}"),
+                None => format!("tls://{url}"),
+            };
+            (
+                first,
+                format!("the files for TLS are not used: {} is without TLS", quoted(url)),
+                format!("name the network {}, or leave them out", quoted(&named)),
+            )
+        }
         (Some(at), None) => (at, "`tlsCertificate` is given without `tlsKey`".to_owned(), both.to_owned()),
         (None, Some(at)) => (at, "`tlsKey` is given without `tlsCertificate`".to_owned(), both.to_owned()),
         _ => return false,

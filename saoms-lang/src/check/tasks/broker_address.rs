@@ -1,4 +1,5 @@
-//! The address of a message broker: `host:port`, or with the name of a transport `tls://host:port`.
+//! The address of a network: that of its message broker, `host:port`, or with the name of a transport
+//! `tls://host:port`; or those of all its programs, `peers://hall=host:port,gate=host:port`.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::ops::Range;
@@ -20,9 +21,53 @@ pub(crate) struct AddressFault {
     pub(crate) instead: Option<String>,
 }
 
+/// How the addresses of networks without a broker begin: without TLS, and with it.
+const OF_PEERS: [&str; 2] = ["peers://", "peers+tls://"];
+
+/// The programs of a network without a broker, each with its name and where it listens; `None` for one with a broker.
+pub(crate) fn peers(text: &str) -> Option<impl Iterator<Item = (&str, &str)>> {
+    let list = OF_PEERS.iter().find_map(|begin| text.strip_prefix(begin))?;
+    Some(list.split(',').map(|peer| peer.split_once('=').unwrap_or(("", peer))))
+}
+
+/// The fault of the list of the programs of a network without a broker, which begins at this byte.
+fn fault_of_peers(list: &str, start: usize) -> Option<AddressFault> {
+    let mut known: Vec<(&str, &str)> = Vec::new();
+    let mut at = start;
+    for peer in list.split(',') {
+        let place = at..at + peer.len();
+        at = place.end + 1;
+        let fault_at = |at: Range<usize>, message: String| Some(AddressFault { at, message, instead: None });
+        let Some((name, address)) = peer.split_once('=').filter(|(name, _)| !name.is_empty()) else {
+            let message = "each peer has a name before `=`, and its address behind it".to_owned();
+            return fault_at(place, message);
+        };
+        let address_at = place.start + name.len() + 1;
+        if let Some(fault) = fault(address) {
+            return Some(AddressFault { at: fault.at.start + address_at..fault.at.end + address_at, ..fault });
+        }
+        if !is_plain(address) {
+            let message = "an address of a peer has no transport of its own".to_owned();
+            return fault_at(address_at..place.end, message);
+        }
+        if known.iter().any(|(other, _)| *other == name) {
+            return fault_at(place.start..address_at - 1, format!("peer `{name}` is named twice"));
+        }
+        if known.iter().any(|(_, other)| *other == address) {
+            return fault_at(address_at..place.end, format!("two peers listen at `{address}`"));
+        }
+        known.push((name, address));
+    }
+    let message = "one peer has nobody to speak with: name at least two, with `,` between them".to_owned();
+    (known.len() < 2).then_some(AddressFault { at: start..start + list.len(), message, instead: None })
+}
+
 /// The fault of `text` as an address: the name of a transport and `://`, unless it is plain TCP; a host name, an IPv4
 /// address, or an IPv6 address in brackets; then a colon and a port from 1 to 65535.
 pub(crate) fn fault(text: &str) -> Option<AddressFault> {
+    if let Some(begin) = OF_PEERS.iter().find(|begin| text.starts_with(**begin)) {
+        return fault_of_peers(&text[begin.len()..], begin.len());
+    }
     let at = |at: Range<usize>, message: String| Some(AddressFault { at, message, instead: None });
     if let Some(end) = text.find("://") {
         let (scheme, rest) = (&text[..end], &text[end + 3..]);
@@ -95,6 +140,11 @@ pub(crate) fn is_plain(text: &str) -> bool {
     !text.contains("://")
 }
 
+/// True if what goes to an address without fault is not encrypted, as far as is known here.
+pub(crate) fn is_in_clear(text: &str) -> bool {
+    is_plain(text) || text.starts_with(OF_PEERS[0])
+}
+
 /// The host and the port of an address without fault.
 pub(crate) fn host_and_port(text: &str) -> (&str, &str) {
     let address = text.split_once("://").map_or(text, |(_, address)| address);
@@ -110,7 +160,10 @@ pub(crate) fn ip(text: &str) -> Option<IpAddr> {
     host.trim_start_matches('[').trim_end_matches(']').parse().ok()
 }
 
-/// True if an address without fault is of this machine.
+/// True if an address without fault is of this machine; of peers, if all are.
 pub(crate) fn is_loopback(text: &str) -> bool {
+    if let Some(mut peers) = peers(text) {
+        return peers.all(|(_, address)| is_loopback(address));
+    }
     ip(text).is_some_and(|address| address.is_loopback())
 }

@@ -124,9 +124,19 @@ impl Task<'_, '_> {
     fn url(&self, url: &Text, report: &mut Report<'_>) {
         if let Some(fault) = broker_address::fault(url) {
             let at = report.part(url, fault.at);
-            let message = format!("{} is not an address of a message broker: {}", quoted(url), fault.message);
-            let one = Diagnostic::new(&codes::BROKER_URL, at, message)
-                .help("write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535");
+            let (what, help) = match broker_address::peers(url) {
+                Some(_) => (
+                    "a list of peers",
+                    "write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of \
+                     a node or of a composite's file, and where this program listens",
+                ),
+                None => (
+                    "an address of a message broker",
+                    "write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535",
+                ),
+            };
+            let message = format!("{} is not {what}: {}", quoted(url), fault.message);
+            let one = Diagnostic::new(&codes::BROKER_URL, at, message).help(help);
             report.push(match fault.instead {
                 Some(instead) if instead.is_empty() => one.suggest("remove it", at, instead),
                 Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, escaped(&instead)),

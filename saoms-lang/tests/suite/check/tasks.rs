@@ -82,6 +82,79 @@ fn topic_renames() {
 }
 
 #[test]
+fn lists_of_peers() {
+    let url = |text: &str| robot(&format!(r#"<property name="url">{text}</property>"#));
+    for right in ["peers://a=localhost:1,b=localhost:2", "peers://a=[::1]:1,b=127.0.0.1:1,c.d=localhost:7"] {
+        assert_eq!(url(right), "", "{right}");
+    }
+    let all: String = [
+        "peers://",
+        "peers://a=localhost:1",
+        "peers://a=localhost:1,localhost:2",
+        "peers://a=localhost:1,=localhost:2",
+        "peers://a=localhost:1,b=localhost",
+        "peers://a=localhost:1,b=localhost:2,",
+        "peers://a=localhost:1,a=localhost:2",
+        "peers://a=localhost:1,b=localhost:1",
+        "peers://a=localhost:1,b=tls://localhost:2",
+        "peers://a=localhost:1,b=10.0.0.1:2",
+        "peers+tls://a=localhost:1,b=10.0.0.1:2",
+    ]
+    .map(|text| format!("{text}\n{}", url(text)))
+    .concat();
+    expect![[r#"
+        peers://
+        3:30-30 error S4005: `peers://` is not a list of peers: each peer has a name before `=`, and its address behind it
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1
+        3:30-43 error S4005: `peers://a=localhost:1` is not a list of peers: one peer has nobody to speak with: name at least two, with `,` between them
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,localhost:2
+        3:44-55 error S4005: `peers://a=localhost:1,localhost:2` is not a list of peers: each peer has a name before `=`, and its address behind it
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,=localhost:2
+        3:44-56 error S4005: `peers://a=localhost:1,=localhost:2` is not a list of peers: each peer has a name before `=`, and its address behind it
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,b=localhost
+        3:46-55 error S4005: `peers://a=localhost:1,b=localhost` is not a list of peers: there is no port
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+          fix: replace it with `localhost:61616` [3:46-55 "localhost:61616"]
+        peers://a=localhost:1,b=localhost:2,
+        3:58-58 error S4005: `peers://a=localhost:1,b=localhost:2,` is not a list of peers: each peer has a name before `=`, and its address behind it
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,a=localhost:2
+        3:44-45 error S4005: `peers://a=localhost:1,a=localhost:2` is not a list of peers: peer `a` is named twice
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,b=localhost:1
+        3:46-57 error S4005: `peers://a=localhost:1,b=localhost:1` is not a list of peers: two peers listen at `localhost:1`
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,b=tls://localhost:2
+        3:46-63 error S4005: `peers://a=localhost:1,b=tls://localhost:2` is not a list of peers: an address of a peer has no transport of its own
+          help: write each as `NAME=host:port`, such as `peers://hall=localhost:7001,gate=localhost:7002`: the name of a node or of a composite's file, and where this program listens
+        peers://a=localhost:1,b=10.0.0.1:2
+        3:22-56 error S4021: other machines can reach these peers, which do not ask for certificates
+          help: write `peers+tls://`, and give `tlsCa`, `tlsCertificate` and `tlsKey`: see docs/security.md
+        peers+tls://a=localhost:1,b=10.0.0.1:2
+        3:22-60 error S4021: other machines can reach these peers, which do not ask for certificates
+          help: write `peers+tls://`, and give `tlsCa`, `tlsCertificate` and `tlsKey`: see docs/security.md
+    "#]].assert_eq(&all);
+    let account = r#"<property name="url">peers://a=localhost:1,b=localhost:2</property>
+        <property name="user">u</property><property name="password">$P</property>"#;
+    expect![[r#"
+        4:31-32 error S4006: peers know no users: none of them is the broker that would ask for one
+          help: leave `user` and its password out; peers recognise each other by certificates, with `peers+tls://`
+    "#]]
+    .assert_eq(&robot(account));
+    let tls = r#"<property name="url">peers://a=localhost:1,b=localhost:2</property>
+        <property name="tlsCa">ca.pem</property>"#;
+    expect![[r#"
+        4:32-38 error S4025: the files for TLS are not used: `peers://a=localhost:1,b=localhost:2` is without TLS
+          help: name the network `peers+tls://a=localhost:1,b=localhost:2`, or leave them out
+    "#]]
+    .assert_eq(&robot(tls));
+}
+
+#[test]
 fn addresses_of_message_brokers() {
     let url = |text: &str| robot(&format!(r#"<property name="url">{text}</property>"#));
     for right in ["localhost:61616", "127.0.0.1:1", "[::1]:65535"] {

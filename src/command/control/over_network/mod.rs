@@ -163,6 +163,7 @@ impl UrlArguments {
             TlsFiles { ca: path(&self.tls_ca), certificate: path(&self.tls_certificate), key: path(&self.tls_key) };
         let (users, access) = (Vec::new(), Vec::new());
         let tls = (tls != TlsFiles::default()).then_some(tls);
-        Ok(SessionSettings { url: url.to_owned(), listen: false, account: account.transpose()?, users, access, tls })
+        let (url, account) = (url.to_owned(), account.transpose()?);
+        Ok(SessionSettings { url, listen: false, peer: None, account, users, access, tls })
     }
 }

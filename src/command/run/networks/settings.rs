@@ -7,7 +7,7 @@ use std::path::Path;
 use saoms_api::Secret;
 use saoms_api::extension::{Access, Router, RouterClass, TlsPaths};
 use saoms_core::network::key;
-use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport};
+use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport, peers};
 use saoms_lang::assembly::{Assembly, ComponentSpec, RemoteTarget, TaskProperties};
 use saoms_lang::diagnostic::{Diagnostic, codes};
 
@@ -79,6 +79,8 @@ impl Described {
 /// Makes settings of what components say, and notes what cannot be used.
 pub(super) struct Resolver<'r> {
     pub(super) assembly: &'r Assembly,
+    /// The name of the program.
+    pub(super) name: &'r str,
     pub(super) faults: Vec<Diagnostic>,
 }
 
@@ -88,6 +90,7 @@ impl Resolver<'_> {
         let mut settings = SessionSettings {
             url: url.to_owned(),
             listen: described.router.is_some(),
+            peer: peers(url).is_some().then(|| self.name.to_owned()),
             account: None,
             users: Vec::new(),
             access: Vec::new(),
@@ -129,6 +132,17 @@ impl Resolver<'_> {
             };
             self.fault(component, property, &fault.text);
         }
+    }
+
+    /// Notes that the url of a network without a router does not name this program, but these.
+    pub(super) fn unnamed(&mut self, described: &Described, named: &[&str]) {
+        let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(described.first) else { return };
+        let Some(place) = self.assembly.networks.get(path, "url") else { return };
+        let named: Vec<String> = named.iter().map(|name| format!("`{name}`")).collect();
+        let message =
+            format!("this program, `{}`, is not among the peers of this network: {}", self.name, named.join(", "));
+        let one = Diagnostic::new(&codes::PEER_MISSING, place, message);
+        self.faults.push(one.help("a program is named by its node, or by the file of its composite"));
     }
 
     fn has(&self, component: usize, property: &str) -> bool {

@@ -1,0 +1,88 @@
+//! Networks without a broker: each program listens, and reaches the others.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::nodes::{at_node, start};
+use super::programs::{Given, Programs, Transport, component, free_port, on_network};
+
+/// The url of a network of these programs, each of which listens at a port of its own.
+fn url(names: &[&str]) -> String {
+    let named: Vec<String> = names.iter().map(|name| format!("{name}=127.0.0.1:{}", free_port())).collect();
+    format!("peers://{}", named.join(","))
+}
+
+#[test]
+fn nodes_without_a_broker_are_one_fleet() {
+    let programs = Programs::over(Transport::Zenoh);
+    let url = url(&["control", "traffic", "gate"]);
+    let task = |name: &str, class: &str, more: Given<'_>| {
+        let usual = [("ID", name), ("period", "100"), ("url", &url)];
+        component(name, class, &[&usual, more].concat())
+    };
+    let map = "...........\n".repeat(11);
+    let scenario =
+        "at 1s luggage (3,1) to (3,10)\nthen 300ms every 300ms 3 times luggage (5,0)..(9,10) to (1,0)..(4,10)";
+    let battery = [("dischargePerBlock", "1"), ("chargePerSecond", "10")];
+    let components = task("Environment", "saoms.Environment", &[("scenario", scenario)])
+        + &task("Master", "saoms.MasterEnvironment", &[])
+        + &at_node("traffic", task("Zone", "saoms.Zone", &[("map", &map)]))
+        + &at_node("gate", task("Robot1", "saoms.Robot", &battery))
+        + &at_node("gate", task("Robot2", "saoms.Robot", &battery));
+    let composite = format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:s=\"urn:saoms:1\" \
+         targetNamespace=\"urn:fleet\" name=\"fleet\" s:defaultNode=\"control\">\n{components}</composite>\n"
+    );
+    programs.write("fleet.composite", &composite);
+    // The first of the peers, which all others reach, is there last.
+    let others = ["gate", "traffic"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    programs.until(&others[0], "has joined the network at");
+    sleep(Duration::from_secs(1));
+    let control = start(&programs, "fleet.composite", "control", &[]);
+    for program in [&control, &others[0], &others[1]] {
+        programs.ends(program, 0);
+    }
+    for luggage in 1..=4 {
+        let deposited = format!("deposited luggage {luggage} at");
+        assert_eq!(others[0].printed().matches(&deposited).count(), 1, "{}", programs.printed());
+    }
+    assert!(!programs.printed().contains("panicked"), "{}", programs.printed());
+    // A node that the url forgets is told before anything starts.
+    programs.write("fleet.composite", &composite.replace(",gate=", ",gaet="));
+    let check = programs.saoms(&["check", "fleet.composite"]);
+    let said = String::from_utf8_lossy(&check.stdout).into_owned() + &String::from_utf8_lossy(&check.stderr);
+    assert!(said.contains("error[S4030]: node `gate` is not among the peers of this network"), "{said}");
+}
+
+#[test]
+fn peers_go_on_without_one_that_is_killed_and_take_in_who_comes_in_its_place() {
+    let programs = Programs::over(Transport::Zenoh);
+    let url = url(&["other", "reader", "senders"]);
+    let tasks = |name: &str, tasks: &[_]| programs.start(name, &on_network(&url, &[], tasks));
+    let other = || tasks("other", &[("other-Reader", "numbers.Reader", &[("count", "1000000")][..])]);
+    let given = [("count", "20000"), ("each", "100"), ("readers", "2")];
+    let senders = tasks("senders", &[("Sender1", "numbers.Sender", &given[..]), ("Sender2", "numbers.Sender", &given)]);
+    let of_reader = [("count", "20000"), ("senders", "2"), ("queue", "100000")];
+    let reader = tasks("reader", &[("Reader", "numbers.Reader", &of_reader[..])]);
+    let killed = other();
+    programs.until(&senders, "Sender2        begins");
+    killed.kill();
+    sleep(Duration::from_secs(1));
+    let again = other();
+    programs.until(&again, "program `senders` is on the network");
+    for sender in ["Sender1", "Sender2"] {
+        programs.until(&reader, &format!("has received 1 to 20000 of {sender}"));
+    }
+    for program in [&again, &reader, &senders] {
+        programs.stop(program);
+    }
+    for sign in ["panicked", "are lost"] {
+        assert!(!programs.printed().contains(sign), "{}", programs.printed());
+    }
+    assert!(!reader.printed().contains("wrong:"), "{}", programs.printed());
+    // A program that the list does not name can reach nobody, and nobody could reach it.
+    let stranger = tasks("stranger", &[("Stranger", "numbers.Reader", &[("count", "1")][..])]);
+    programs.ends(&stranger, 2);
+    let said = "this program, `stranger`, is not among the peers of this network: `other`, `reader`, `senders`";
+    assert!(stranger.printed().contains(said), "{}", stranger.printed());
+}
