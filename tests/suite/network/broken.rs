@@ -4,31 +4,30 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use super::programs::{Programs, Transport};
-use super::{reader, receives_all, senders};
+use super::{MANY, reader, receives_all, senders};
 
 #[test]
 fn a_broker_that_is_killed_and_comes_again_costs_no_event() {
-    broker_comes_again(&Programs::new(), "20000");
+    broker_comes_again(&Programs::new());
 }
 
 #[test]
 fn a_broker_that_is_killed_and_comes_again_costs_no_event_over_zenoh() {
-    // Fewer: without optimization, Zenoh takes its time.
-    broker_comes_again(&Programs::over(Transport::Zenoh), "4000");
+    broker_comes_again(&Programs::over(Transport::Zenoh));
 }
 
 #[track_caller]
-fn broker_comes_again(programs: &Programs, count: &str) {
+fn broker_comes_again(programs: &Programs) {
     let first = programs.broker();
-    let reader = reader(programs, "reader", programs.port, &[("count", count)]);
-    let senders = senders(programs, programs.port, &[("count", count), ("each", "100")]);
+    let reader = reader(programs, "reader", programs.port, &[("count", MANY)]);
+    let senders = senders(programs, programs.port, &[("count", MANY), ("each", "1000")]);
     programs.until(&senders, "Sender2        begins");
     sleep(Duration::from_secs(1));
     first.kill();
     programs.until(&senders, "program `broker` gives no sign of life");
     sleep(Duration::from_secs(1));
     let second = programs.broker();
-    receives_all(programs, &reader, count);
+    receives_all(programs, &reader, MANY);
     programs.ends(&senders, 0);
     programs.end(&second);
 }
@@ -37,8 +36,8 @@ fn broker_comes_again(programs: &Programs, count: &str) {
 fn programs_that_stop_for_seconds_miss_nothing_and_nothing_of_them_is_missed() {
     let programs = Programs::new();
     let broker = programs.broker();
-    let reader = reader(&programs, "reader", programs.port, &[("count", "10000")]);
-    let senders = senders(&programs, programs.port, &[("count", "10000"), ("each", "200")]);
+    let reader = reader(&programs, "reader", programs.port, &[("count", MANY)]);
+    let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
     programs.until(&senders, "Sender2        begins");
     for (stopped, name, other) in [(&reader, "reader", &senders), (&senders, "senders", &reader)] {
         stopped.signal(libc::SIGSTOP);
@@ -47,7 +46,7 @@ fn programs_that_stop_for_seconds_miss_nothing_and_nothing_of_them_is_missed() {
         stopped.signal(libc::SIGCONT);
         programs.until(other, &format!("program `{name}` gives signs of life again"));
     }
-    receives_all(&programs, &reader, "10000");
+    receives_all(&programs, &reader, MANY);
     programs.ends(&senders, 0);
     programs.end(&broker);
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::programs::Programs;
 use super::proxy::{Line, Proxy};
-use super::{reader, receives_all, senders};
+use super::{MANY, reader, receives_all, senders};
 
 /// All events arrive over the proxy, to which this happens while they are sent: with the reader behind it, and with the
 /// senders. Some program says this then.
@@ -48,7 +48,7 @@ fn events_arrive_over_a_line_that_breaks_again_and_again() {
             proxy.cut();
         }
     };
-    all_arrive(Line::default(), "5000", "200", cuts, "the link to the network was lost");
+    all_arrive(Line::default(), MANY, "1000", cuts, "the link to the network was lost");
 }
 
 #[test]
@@ -58,5 +58,5 @@ fn events_arrive_after_a_line_that_was_dead_without_a_word() {
         sleep(Duration::from_secs(2));
         proxy.cut();
     };
-    all_arrive(Line::default(), "5000", "200", swallows, "gives no sign of life");
+    all_arrive(Line::default(), MANY, "1000", swallows, "gives no sign of life");
 }

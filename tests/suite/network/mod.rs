@@ -27,6 +27,9 @@ use std::sync::Arc;
 
 use programs::{Given, Program, Programs};
 
+/// Number of events of each sender over an outage, in tenths of seconds with a thousand each.
+const MANY: &str = "100000";
+
 /// Two senders of numbered events in one program, at this port.
 fn senders(programs: &Programs, port: u16, given: Given<'_>) -> Arc<Program> {
     let tasks = [("Sender1", "numbers.Sender", given), ("Sender2", "numbers.Sender", given)];
@@ -35,7 +38,7 @@ fn senders(programs: &Programs, port: u16, given: Given<'_>) -> Arc<Program> {
 
 /// A program with a reader of what both send, at this port.
 fn reader(programs: &Programs, name: &str, port: u16, given: Given<'_>) -> Arc<Program> {
-    let usual = [("senders", "2"), ("queue", "100000")];
+    let usual = [("senders", "2"), ("queue", "200000")];
     programs.tasks(name, port, &[(&format!("{name}-Reader"), "numbers.Reader", &[&usual, given].concat())])
 }
 
