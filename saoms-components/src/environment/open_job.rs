@@ -54,8 +54,8 @@ impl OpenJob {
             (self.passed_on, self.bearer) = (false, 0);
             (self.again, self.pause) = (execution + AGAIN, 2 * AGAIN);
         }
-        if let Some(from) = self.stops.first_mut().filter(|_| carried) {
-            *from = removal.block;
+        if let Some((from, block)) = self.stops.first_mut().zip(removal.block).filter(|_| carried) {
+            *from = block;
         }
     }
 }

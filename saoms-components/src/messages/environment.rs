@@ -303,8 +303,8 @@ pub struct Removal {
     pub robot: u32,
     /// Time from which on it is out: an answer about an earlier time says nothing of where it is now.
     pub since: Time,
-    /// Block where it was.
-    pub block: Block,
+    /// Block where it was; none in a world that does not know the robot.
+    pub block: Option<Block>,
     /// Numbers of the pieces that it carried, which are on that block.
     pub luggage: Vec<u32>,
     /// Numbers of those that it carried and for which that block is the destination.
@@ -319,7 +319,7 @@ impl Validate for Removal {
     }
 
     fn validate(&self, _sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
-        Problem::of_block(self.block, area)?;
+        self.block.map_or(Ok(()), |block| Problem::of_block(block, area))?;
         validator.check_known(self.robot)
     }
 }

@@ -81,7 +81,7 @@ impl World {
             let (delivered, luggage) = self.put_down(context, robot, block);
             if !delivered.is_empty() || !luggage.is_empty() {
                 let since = context.now();
-                self.say_left(context, Removal { robot, since, block, luggage, delivered })?;
+                self.say_left(context, Removal { robot, since, block: Some(block), luggage, delivered })?;
             }
         }
         Ok(())

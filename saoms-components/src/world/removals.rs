@@ -23,9 +23,9 @@ impl World {
                 context.count("robots.gone", 1);
                 context.effect(record!(frees_block: "robot {robot} is gone: {block} is free", robot, block));
                 warn!(context, "{fault}: {block} is free");
-                (block, delivered, luggage)
+                (Some(block), delivered, luggage)
             }
-            Err(_) => (Block::default(), Vec::new(), Vec::new()),
+            Err(_) => (None, Vec::new(), Vec::new()),
         };
         self.say_left(context, Removal { robot, since, block, luggage, delivered })
     }
@@ -56,7 +56,7 @@ impl World {
                 context
                     .effect(record!(stops_failed_robot: "robot {robot} has failed: it stays at {block}", robot, block));
                 warn!(context, "{fault}: it stays at {block}");
-                Removal { robot, since, block, luggage, delivered }
+                Removal { robot, since, block: Some(block), luggage, delivered }
             }
             // It is none of this world.
             Err(_) => Removal { robot, since, ..Removal::default() },
@@ -82,7 +82,7 @@ impl World {
         }
         let removal = match self.left.get(&robot).filter(|left| is_gone || left.since >= since) {
             Some(left) => left.clone(),
-            None => Removal { robot, since, block: self.referee.block(robot)?, ..Removal::default() },
+            None => Removal { robot, since, block: Some(self.referee.block(robot)?), ..Removal::default() },
         };
         context.send(&self.removals, removal)
     }

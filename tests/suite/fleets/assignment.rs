@@ -114,6 +114,17 @@ fn luggage_that_was_taken_before_the_master_heard_that_it_was_given_back_is_requ
     fleet.expect_invariants(1..2, HOUR);
 }
 
+/// What a robot said before it was done with a piece comes after that.
+#[test]
+fn words_of_robots_that_overtake_each_other_do_not_mislead_a_master_for_ever() {
+    let scenario = "at 1s for 40s reorder 30 % by 2s on ELMSTOPIC
+        from 1s every 300ms 20 times luggage random to random";
+    for assignment in ["optimal", "oldest"] {
+        let fleet = fleet(6, &format!("assignment={assignment}"), scenario, &COLUMN);
+        (0..10).for_each(|seed| _ = delivers(&fleet, seed, 20));
+    }
+}
+
 #[test]
 fn a_master_assigns_all_luggage_once() {
     let robots = [(0, 0, ""), (5, 5, ""), (10, 0, ""), (0, 10, ""), (10, 10, "asleep=true")];

@@ -47,7 +47,7 @@ pub struct Member {
     pub withdrawn: Option<u32>,
     period: u64,
     moved: Time,
-    /// When it said that it took the last luggage.
+    /// When it said last that it took luggage, or that it has done with it.
     took_at: Time,
     /// Time of the last assignment.
     asked_at: Time,
@@ -265,8 +265,8 @@ impl Crew {
         self.sort(said.robot);
     }
 
-    /// True if a robot said since that it has left this luggage, or taken other luggage: messages may overtake each
-    /// other.
+    /// True if a robot said since that it has left this luggage, or has taken or done with luggage: messages may overtake
+    /// each other.
     pub(super) fn is_outdated(&mut self, said: &EventLuggage, sent: Time) -> bool {
         let EventLuggage { luggage, robot, stage, .. } = *said;
         match stage {
@@ -288,6 +288,10 @@ impl Crew {
                 let of_luggage = self.left.range((luggage, 0)..=(luggage, u32::MAX)).map(|(key, _)| *key);
                 for key in of_luggage.collect::<Vec<_>>() {
                     self.left.remove(&key);
+                }
+                // It has one job at a time: what it said of taking before is over.
+                if let Some(member) = self.members.get_mut(&robot) {
+                    member.took_at = member.took_at.max(sent);
                 }
                 false
             }

@@ -56,7 +56,7 @@ impl OpenLuggage {
         for luggage in luggage {
             let piece = self.pieces.get_mut(luggage);
             if let Some(piece) = piece.filter(|piece| piece.taken == Some(*robot) || piece.left_by == Some(*robot)) {
-                piece.lies_at(*block);
+                block.iter().for_each(|block| piece.lies_at(*block));
                 self.changed = true;
             }
         }
@@ -71,8 +71,7 @@ impl OpenLuggage {
         let told = untold.map(|(robot, one)| {
             one.is_told = true;
             // A world without the robot says nothing of its block.
-            let removal = left.get(robot).filter(|removal| removal.block != Block::default());
-            one.fault.block = removal.map(|removal| removal.block);
+            one.fault.block = left.get(robot).and_then(|removal| removal.block);
             one.fault.clone()
         });
         told.collect()

@@ -122,7 +122,13 @@ fn luggage_of_a_robot_that_is_gone_waits_again_where_it_lies() {
     open.hear_situation(&help);
     open.take_away(&Fault::gone(1), heard(5));
     assert_eq!(again(&mut open, true), [], "the world says where it lies");
-    open.hear_removal(&Removal { robot: 1, since: at(5), block: block(4), luggage: vec![1], delivered: Vec::new() });
+    open.hear_removal(&Removal {
+        robot: 1,
+        since: at(5),
+        block: Some(block(4)),
+        luggage: vec![1],
+        delivered: Vec::new(),
+    });
     assert_eq!(again(&mut open, true), [(1, 1, 4)], "the broken robot asked for help with the other piece");
     assert_eq!(again(&mut open, true), []);
     open.hear_response(&taken(4));

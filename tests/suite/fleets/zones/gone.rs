@@ -130,3 +130,23 @@ fn a_zone_that_fails_as_it_hears_that_a_robot_is_gone_hears_it_again() {
         }
     }
 }
+
+/// The corner is a block like all others.
+#[test]
+fn others_bring_luggage_past_a_robot_that_failed_in_any_block() {
+    let map = [".....\n"; 4].concat();
+    for zones in [String::new(), zones(1, 5)] {
+        for (x, y) in [(0, 0), (0, 1), (1, 0), (4, 0)] {
+            let scenario = format!(
+                "at 1s luggage ({x},{y}) to (2,0)
+                at 1400ms crash Robot1
+                at 8s luggage (2,3) to (1,1)
+                at 9s luggage (2,3) to (2,1)"
+            );
+            let world = [("map", map.clone()), ("moveTime", "500ms".to_owned())];
+            let fleet = site(&world, &zones, &(robot(1, x, y) + &robot(2, 3, 3)), &scenario);
+            let run = fleet.run(1, Duration::from_secs(100));
+            assert_eq!(delivered(&run), 3, "({x},{y}): {}", run.log());
+        }
+    }
+}
