@@ -3,6 +3,7 @@
 mod latency;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 
@@ -20,6 +21,10 @@ const REPEAT: u32 = 4;
 
 /// The same for a robot that waits for a grant.
 const REPEAT_WAITING: u32 = 2;
+
+/// Number of executions without a word of a zone for which a robot that waits for one takes the zone for out of reach. A
+/// zone that does not come back in that time is taken for dead.
+const CUT_OFF: Range<u32> = 20..6000;
 
 /// Number of executions after which a robot says that it cannot enter the floor.
 const LONG: u32 = 50;
@@ -57,6 +62,8 @@ pub(crate) struct ZoneClient {
     validator: MessageValidator,
     /// Number of executions since the last request.
     silent: u32,
+    /// Number of executions in which it waited to drive on, since a zone was heard last.
+    unheard: u32,
     goal: Option<Block>,
     /// For each zone, the first request with that goal.
     aimed: Vec<Aimed>,
@@ -144,6 +151,7 @@ impl ZoneClient {
             state_due: 0,
             validator: MessageValidator::default(),
             silent: 0,
+            unheard: 0,
             goal: None,
             aimed: Vec::new(),
             rested: false,
@@ -242,6 +250,7 @@ impl ZoneClient {
             aimed,
             rested,
             is_asked,
+            unheard,
             ..
         } = self
         else {
@@ -269,6 +278,7 @@ impl ZoneClient {
             } else if validator.accepts(grant, header, area, context) && passage.hear(grant) {
                 let waits = grant.waits_for != 0;
                 *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
+                *unheard = 0;
                 latency.hears(grant.zone, grant.heard);
                 is_late |= !*rested && aimed.iter().any(|one| one.zone == grant.zone && one.number > grant.heard);
             }
@@ -402,6 +412,11 @@ impl ZoneClient {
         self.passage.as_ref().is_some_and(|passage| passage.links().iter().any(|link| link.heard == LAST_NUMBER))
     }
 
+    /// True if the robot waits for a zone that it does not hear: no other robot is why.
+    pub(crate) fn is_cut_off(&self) -> bool {
+        CUT_OFF.contains(&self.unheard)
+    }
+
     /// Sends what changed, or what was not confirmed for long.
     ///
     /// # Errors
@@ -410,6 +425,7 @@ impl ZoneClient {
         let Some(passage) = &mut self.passage else { return Ok(()) };
         self.silent = self.silent.saturating_add(1);
         let waits = passage.next().is_none() && wish.goal.is_some_and(|goal| goal != passage.end());
+        self.unheard = if waits { self.unheard.saturating_add(1) } else { 0 };
         let again = self.silent >= if waits { REPEAT_WAITING } else { REPEAT };
         let requests = passage.requests(wish, again);
         if again || !requests.is_empty() {

@@ -4,6 +4,7 @@ mod apart;
 mod corridor;
 mod entering;
 mod gone;
+mod out_of_reach;
 mod words;
 
 use std::time::Duration;

@@ -285,7 +285,7 @@ impl SafeEventLuggage {
 
     /// Checks that the robot has not been on its job for many times as long as the job takes.
     fn look_at_time(&mut self, knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
-        if knowledge.charging {
+        if knowledge.charging || knowledge.is_cut_off() {
             return None;
         }
         let job = knowledge.job;
