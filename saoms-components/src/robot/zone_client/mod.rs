@@ -426,7 +426,12 @@ impl ZoneClient {
         self.silent = self.silent.saturating_add(1);
         let waits = passage.next().is_none() && wish.goal.is_some_and(|goal| goal != passage.end());
         self.unheard = if waits { self.unheard.saturating_add(1) } else { 0 };
-        let again = self.silent >= if waits { REPEAT_WAITING } else { REPEAT };
+        let again = match waits {
+            // Ever less often, so that a run ends whose zone is dead.
+            true if self.unheard >= CUT_OFF.end => self.unheard.is_power_of_two(),
+            true => self.silent >= REPEAT_WAITING,
+            false => self.silent >= REPEAT,
+        };
         let requests = passage.requests(wish, again);
         if again || !requests.is_empty() {
             self.silent = 0;
