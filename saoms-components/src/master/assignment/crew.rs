@@ -265,8 +265,8 @@ impl Crew {
         self.sort(said.robot);
     }
 
-    /// True if a robot said since that it has left this luggage, or has taken or done with luggage: messages may overtake
-    /// each other.
+    /// True if a robot said since that it has left this luggage, or has taken or done with luggage: messages may
+    /// overtake each other.
     pub(super) fn is_outdated(&mut self, said: &EventLuggage, sent: Time) -> bool {
         let EventLuggage { luggage, robot, stage, .. } = *said;
         match stage {

@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use saoms_api::{Field, Header, Time};
 
 use super::OpenLuggage;
-use crate::grid::Block;
 use crate::messages::{EventLuggage, Fault, Removal};
 
 /// A robot whose component failed.
@@ -133,7 +132,7 @@ impl OpenLuggage {
                 continue;
             };
             if let Some(left) = self.left.get(&robot).filter(|left| left.luggage.contains(luggage)) {
-                piece.lies_at(left.block);
+                left.block.iter().for_each(|block| piece.lies_at(*block));
             }
             (piece.waits, piece.left_by) = (true, None);
             self.waiting.insert((piece.since, *luggage));

@@ -8,7 +8,6 @@ use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
 use crate::messages::{IMMOVABLE, Position, Priority, Standing};
 use crate::robot::hardware_client::Reply;
-use crate::robot::zone_client::ZoneClient;
 use crate::robot::{ASSISTANCE, HEARD, RobotKnowledge};
 use crate::zone::{MOST_AHEAD, Wish};
 
@@ -170,7 +169,7 @@ impl RobotKnowledge {
 
     /// True if the robot waits for a zone that is out of reach, and not for other robots.
     pub(super) fn is_cut_off(&self) -> bool {
-        self.zones.as_ref().is_some_and(ZoneClient::is_cut_off)
+        self.zones.as_ref().is_some_and(|zones| zones.is_cut_off())
     }
 
     /// Number of blocks that have to be granted ahead. A robot that has to reach its charger in time needs the whole

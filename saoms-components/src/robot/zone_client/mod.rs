@@ -22,8 +22,8 @@ const REPEAT: u32 = 4;
 /// The same for a robot that waits for a grant.
 const REPEAT_WAITING: u32 = 2;
 
-/// Number of executions without a word of a zone for which a robot that waits for one takes the zone for out of reach. A
-/// zone that does not come back in that time is taken for dead.
+/// Number of executions without a word of a zone for which a robot that waits for one takes the zone for out of reach.
+/// A zone that does not come back in that time is taken for dead.
 const CUT_OFF: Range<u32> = 20..6000;
 
 /// Number of executions after which a robot says that it cannot enter the floor.
