@@ -6,18 +6,19 @@ use super::Counts;
 
 /// What has to hold in each run of a fleet, whatever is done to it: judged by the messages that components send.
 ///
-/// Messages are those that were sent, before any fault acts on their ways; they come in the order in which they were
-/// sent.
+/// Messages are those that components of this program sent, before any fault acts on their ways; they come in the order
+/// in which they were sent. Other programs judge what theirs send.
 pub trait RunInvariants: Send {
     /// True if the messages of a topic are judged, which its publishers declare so and call `name` after renaming.
     /// Asked before the first message of the topic.
     fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool;
 
-    /// Takes in a message that a component sent on such a topic; `component` is the path of the component.
-    fn message(&mut self, topic: &str, component: &str, message: &SharedMessage);
+    /// Takes in a message that a component of this program sent on such a topic.
+    fn message(&mut self, topic: &str, message: &SharedMessage);
 
-    /// Takes in a fault that begins.
-    fn fault(&mut self, at: Time, call: &FaultCall);
+    /// Takes in a fault that begins. `concerned` are the components that a fault of components names, those of other
+    /// programs included; without any for a fault of messages.
+    fn fault(&mut self, at: Time, call: &FaultCall, concerned: &[ConcernedComponent]);
 
     /// Takes in the end of the run. `is_cut_off` is true if something from outside ended it, such as a time limit.
     fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>);
@@ -27,6 +28,24 @@ pub trait RunInvariants: Send {
 
     /// What the run came to, after its end.
     fn measures(&self) -> Vec<Measure>;
+}
+
+/// A component that a fault concerns.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ConcernedComponent {
+    /// Its path.
+    pub path: String,
+    /// The topics on which it may send.
+    pub publishes: Vec<ConcernedTopic>,
+}
+
+/// A topic on which a component that a fault concerns may send.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConcernedTopic {
+    /// Its name after renaming, with the site before it.
+    pub name: String,
+    /// The name of the type of its messages.
+    pub message: String,
 }
 
 /// A violation of an invariant.

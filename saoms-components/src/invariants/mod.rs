@@ -10,12 +10,14 @@ mod robots;
 mod strain;
 mod tide;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_api::event::fault::{FaultCall, FaultKind, is_named};
-use saoms_api::extension::{Counts, InvariantsRegistration, Measure, RunInvariants, Violation, submit};
+use saoms_api::event::fault::{FaultCall, FaultKind};
+use saoms_api::extension::{
+    ConcernedComponent, Counts, InvariantsRegistration, Measure, RunInvariants, Violation, submit,
+};
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use crate::messages::{
@@ -59,7 +61,6 @@ enum Content {
     Slow,
     Drain,
     Outage,
-    Territory,
 }
 
 /// The invariants of one run. Each site has robots and luggage of its own.
@@ -67,8 +68,7 @@ enum Content {
 struct FleetInvariants {
     topics: HashMap<String, (String, Content)>,
     sites: BTreeMap<String, Site>,
-    /// Worlds and zones, without which no robot moves.
-    indispensable: BTreeSet<String>,
+    /// Of all sites.
     tide: Tide,
     looked: Time,
     found: Vec<Violation>,
@@ -79,6 +79,10 @@ struct FleetInvariants {
 struct Site {
     robots: Robots,
     pieces: Pieces,
+    /// True if its world is of this program, which counts what is delivered then.
+    has_world: bool,
+    /// True if its world or a zone has crashed for good: without it no robot moves.
+    has_stopped: bool,
 }
 
 /// Where violations are noted.
@@ -109,9 +113,13 @@ fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
         one if carries(one, &SLOW) => Content::Slow,
         one if carries(one, &DRAIN) => Content::Drain,
         one if carries(one, &OUTAGE) => Content::Outage,
-        one if carries(one, &TERRITORY) => Content::Territory,
         _ => return None,
     })
+}
+
+/// The site of a topic.
+fn site_of(topic: &str) -> &str {
+    topic.rsplit_once('/').map_or("", |(site, _)| site)
 }
 
 /// The time after which something does not happen any more, for robots with this period in microseconds.
@@ -123,10 +131,11 @@ impl FleetInvariants {
     /// Looks for what does not happen.
     fn look(&mut self, at: Time) {
         self.looked = at;
-        for (site, Site { robots, pieces }) in &mut self.sites {
+        for (site, Site { robots, pieces, has_stopped, .. }) in &mut self.sites {
             let mut finder = Finder { site, at, found: &mut self.found };
-            robots.look(&self.tide, &mut finder);
-            pieces.look(&self.tide, robots.longest_period(), &mut finder);
+            let tide = self.tide.at_site(*has_stopped);
+            robots.look(&tide, &mut finder);
+            pieces.look(&tide, robots.longest_period(), &mut finder);
         }
     }
 }
@@ -134,25 +143,23 @@ impl FleetInvariants {
 impl RunInvariants for FleetInvariants {
     fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
         let Some(content) = content(declared) else { return false };
-        let site = name.rsplit_once('/').map_or("", |(site, _)| site);
-        self.topics.insert(name.to_owned(), (site.to_owned(), content));
+        self.topics.insert(name.to_owned(), (site_of(name).to_owned(), content));
         true
     }
 
-    fn message(&mut self, topic: &str, component: &str, message: &SharedMessage) {
+    fn message(&mut self, topic: &str, message: &SharedMessage) {
         let Some((site, content)) = self.topics.get(topic) else { return };
-        if matches!(content, Content::Area | Content::Territory) && !self.indispensable.contains(component) {
-            self.indispensable.insert(component.to_owned());
-        }
         let at = message.header().sent;
         let state = self.sites.entry(site.clone()).or_default();
         let mut finder = Finder { site, at, found: &mut self.found };
-        let Site { robots, pieces } = state;
+        let Site { robots, pieces, has_world, has_stopped } = state;
         match content {
-            Content::Area => robots.hear_area(message),
-            Content::Territory => {}
+            Content::Area => {
+                *has_world = true;
+                robots.hear_area(message);
+            }
             Content::Position => robots.hear_position(message, &mut finder),
-            Content::Robot => robots.hear_state(message, &self.tide, &mut finder),
+            Content::Robot => robots.hear_state(message, &self.tide.at_site(*has_stopped), &mut finder),
             Content::Collision => robots::hear_collision(message, &mut finder),
             Content::Luggage => {
                 robots.hear_luggage(message, at);
@@ -177,31 +184,33 @@ impl RunInvariants for FleetInvariants {
         }
     }
 
-    fn fault(&mut self, at: Time, call: &FaultCall) {
-        let ends_all = matches!(call.kind, FaultKind::Crash { restart: None })
-            && (call.names_nodes()
-                || call.to.iter().any(|name| self.indispensable.iter().any(|one| is_named(&name.text, one))));
-        match ends_all {
-            true => self.tide.rise_until(None),
-            false => self.tide.begin(at, call),
+    fn fault(&mut self, at: Time, call: &FaultCall, concerned: &[ConcernedComponent]) {
+        self.tide.begin(at, call);
+        if !matches!(call.kind, FaultKind::Crash { restart: None }) {
+            return;
+        }
+        let indispensable = [AREA.declaration().message, TERRITORY.declaration().message];
+        let topics = concerned.iter().flat_map(|one| &one.publishes);
+        for topic in topics.filter(|topic| indispensable.contains(&&*topic.message)) {
+            self.sites.entry(site_of(&topic.name).to_owned()).or_default().has_stopped = true;
         }
     }
 
     fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>) {
         self.look(at);
-        let (mut delivered, mut requested, mut waits) = (0, 0, Vec::new());
-        for (site, Site { robots, pieces }) in &mut self.sites {
+        let (mut delivered, mut told, mut requested, mut waits) = (0, 0, 0, Vec::new());
+        for (site, Site { robots, pieces, has_world, has_stopped }) in &mut self.sites {
             let mut finder = Finder { site, at, found: &mut self.found };
-            pieces.end(is_cut_off, &self.tide, robots.longest_period(), &mut finder);
+            pieces.end(is_cut_off, &self.tide.at_site(*has_stopped), robots.longest_period(), &mut finder);
             delivered += pieces.delivered();
+            // A world of another program counts there.
+            told += if *has_world { pieces.delivered() } else { 0 };
             requested += pieces.requested();
             waits.extend(pieces.waits());
         }
         let counted = usize::try_from(counts("luggage.delivered")).unwrap_or_default();
-        // A world of another program counts nothing here.
-        if delivered > counted && counted > 0 {
-            let text =
-                format!("robots said of {delivered} pieces that they were delivered, the world counted {counted}");
+        if told > counted {
+            let text = format!("robots said of {told} pieces that they were delivered, the world counted {counted}");
             Finder { site: "", at, found: &mut self.found }.note(ONCE, text);
         }
         // What no master heard of is not delivered either. One that forgot what it knew may count a piece twice.

@@ -4,7 +4,7 @@ use saoms_api::Time;
 use saoms_api::event::fault::{FaultCall, FaultKind};
 
 /// Until when faults act on the fleet: what has to happen in a time has that time from then on.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tide {
     until: Time,
     /// True if a fault never ends.
@@ -14,6 +14,11 @@ pub(super) struct Tide {
 }
 
 impl Tide {
+    /// The same for a site, in which nothing has to happen any more if it has stopped.
+    pub(super) fn at_site(self, has_stopped: bool) -> Tide {
+        Tide { is_endless: self.is_endless || has_stopped, ..self }
+    }
+
     /// Notes a fault of an instant.
     pub(super) fn rise(&mut self, at: Time) {
         self.until = self.until.max(at);

@@ -3,6 +3,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::event::fault::FaultCall;
+use saoms_api::extension::ConcernedComponent;
 use saoms_api::host::SharedMessage;
 use saoms_api::{Level, Time};
 
@@ -117,7 +118,12 @@ pub enum Occurrence {
     /// Nothing has happened for a long time, although work is left.
     Standstill(Standstill),
     /// A fault begins that was put into the run.
-    Fault(FaultCall),
+    Fault {
+        /// The fault.
+        call: FaultCall,
+        /// The components that a fault of components names, those of other nodes included.
+        concerned: Vec<ConcernedComponent>,
+    },
     /// A remark about the whole fleet.
     Note {
         /// Severity.
@@ -132,9 +138,10 @@ impl Occurrence {
     pub fn level(&self) -> Level {
         match self {
             Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
-            Occurrence::Fault(_) | Occurrence::Console { .. } | Occurrence::Replaced { .. } | Occurrence::Returned => {
-                Level::Info
-            }
+            Occurrence::Fault { .. }
+            | Occurrence::Console { .. }
+            | Occurrence::Replaced { .. }
+            | Occurrence::Returned => Level::Info,
             Occurrence::Started | Occurrence::Left | Occurrence::Alert { text: None, .. } => Level::Debug,
             Occurrence::Failed { restart: None, .. }
             | Occurrence::Alert { text: Some(_), .. }
@@ -203,7 +210,7 @@ impl fmt::Display for Occurrence {
                 let library = library.as_deref().map(|library| format!(" (library `{library}`)")).unwrap_or_default();
                 write!(formatter, "has not returned for {time}{then}{library}")
             }
-            Occurrence::Fault(call) => write!(formatter, "the fault `{call}` begins"),
+            Occurrence::Fault { call, .. } => write!(formatter, "the fault `{call}` begins"),
             Occurrence::Returned => formatter.write_str("has returned"),
             Occurrence::NotStopped { message } => write!(formatter, "its hardware may still move: {message}"),
             Occurrence::Standstill(standstill) => standstill.fmt(formatter),

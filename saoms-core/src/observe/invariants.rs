@@ -53,12 +53,12 @@ impl Observer for InvariantWatch {
     }
 
     fn message(&self, sent: &SentMessage) {
-        self.all().iter_mut().for_each(|one| one.message(&sent.topic, &sent.component, &sent.message));
+        self.all().iter_mut().for_each(|one| one.message(&sent.topic, &sent.message));
     }
 
     fn event(&self, event: &RunEvent) {
-        if let Occurrence::Fault(call) = &event.what {
-            self.all().iter_mut().for_each(|one| one.fault(event.time, call));
+        if let Occurrence::Fault { call, concerned } = &event.what {
+            self.all().iter_mut().for_each(|one| one.fault(event.time, call, concerned));
         }
     }
 

@@ -136,7 +136,7 @@ impl Diary {
         let events = self.events.lock().unwrap();
         let told = events
             .iter()
-            .filter(|event| !matches!(event.what, Occurrence::Started | Occurrence::Left | Occurrence::Fault(_)));
+            .filter(|event| !matches!(event.what, Occurrence::Started | Occurrence::Left | Occurrence::Fault { .. }));
         told.fold(String::new(), |mut text, event| {
             writeln!(text, "{event}").unwrap();
             text

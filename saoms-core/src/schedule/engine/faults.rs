@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use saoms_api::event::fault::{FaultCall, names_component};
+use saoms_api::extension::{ConcernedComponent, ConcernedTopic};
 use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Cause, Level};
 use saoms_lang::assembly::ComponentSpec;
@@ -27,7 +28,29 @@ fn any_end<'e>(slots: &'e [Slot], networks: &'e Networks, number: u32) -> Option
     Some(End { number, path: &spec.path, site: &spec.site, node: &spec.node })
 }
 
+/// True if a fault of components of a site names this one; an empty site is all.
+fn is_named(spec: &ComponentSpec, call: &FaultCall, site: &str) -> bool {
+    (site.is_empty() || spec.site == site)
+        && call.to.iter().any(|word| names_component(&word.text, &spec.path, &spec.node))
+}
+
+/// A component as observers of a fault hear of it.
+fn concerned(spec: &ComponentSpec) -> ConcernedComponent {
+    let loops = spec.loops.iter().flat_map(|one| &one.class.declaration().publishes);
+    let publishes = spec.class.declaration().publishes.iter().chain(loops).map(|declared| ConcernedTopic {
+        name: spec.topic(&declared.name).into_owned(),
+        message: declared.message.clone(),
+    });
+    ConcernedComponent { path: spec.path.clone(), publishes: publishes.collect() }
+}
+
 impl Engine {
+    /// The components that a fault of components names, everywhere.
+    fn concerned_by(&self, call: &FaultCall, site: &str) -> Vec<ConcernedComponent> {
+        let named = self.members_everywhere().filter(|(_, spec)| spec.task.is_some() && is_named(spec, call, site));
+        named.map(|(_, spec)| concerned(&spec)).collect()
+    }
+
     fn end_of(&self, number: u32) -> Option<End<'_>> {
         any_end(&self.slots, &self.networks, number)
     }
@@ -35,19 +58,15 @@ impl Engine {
     /// Begins a fault, which the journal has as the record `cause`.
     #[cold]
     pub(crate) fn begin_fault(&mut self, (call, cause): (&FaultCall, Cause), site: &str, now: u64) {
-        self.note(now, Occurrence::Fault(call.clone()));
+        let concerned = if call.kind.is_of_messages() { Vec::new() } else { self.concerned_by(call, site) };
+        self.note(now, Occurrence::Fault { call: call.clone(), concerned });
         if call.kind.is_of_messages() {
             self.faults.begin_messages(call, site, now);
             let topics: Vec<TopicId> = self.bus.topics().collect();
             topics.into_iter().for_each(|topic| self.link(topic));
             return;
         }
-        let is_meant = |slot: &Slot| {
-            slot.is_member()
-                && slot.policy.periodic
-                && (site.is_empty() || slot.spec.site == site)
-                && call.to.iter().any(|word| names_component(&word.text, &slot.name, &slot.spec.node))
-        };
+        let is_meant = |slot: &Slot| slot.is_member() && slot.policy.periodic && is_named(&slot.spec, call, site);
         let named = (0..).zip(&self.slots).filter(|(_, slot)| is_meant(slot)).map(|(number, _)| number);
         self.faults.begin_tasks((call, cause), named, now);
         self.note_faults_elsewhere(call, site, now);
@@ -55,11 +74,8 @@ impl Engine {
 
     /// Tells of components of other nodes that a fault names: it acts in the program that plays it.
     fn note_faults_elsewhere(&mut self, call: &FaultCall, site: &str, now: u64) {
-        let is_meant = |spec: &ComponentSpec| {
-            (site.is_empty() || spec.site == site)
-                && call.to.iter().any(|word| names_component(&word.text, &spec.path, &spec.node))
-        };
-        let mut named = self.networks.elsewhere.specs().map(|(_, spec)| spec).filter(|spec| is_meant(spec));
+        let named = self.networks.elsewhere.specs().map(|(_, spec)| spec);
+        let mut named = named.filter(|spec| is_named(spec, call, site));
         let Some(first) = named.next() else { return };
         let text = format!(
             "the fault `{call}` does not reach `{}`, which runs in node `{}`: give that program `--faults`",

@@ -3,10 +3,11 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use saoms_api::{Class, Component, Context, Failure, Own, Publisher};
-use saoms_components::grid::Block;
+use saoms_components::grid::{Block, Map};
+use saoms_components::hardware::Area;
 use saoms_components::messages::{
-    CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION, Position,
-    ROBOT_LIST, RobotList,
+    AREA, CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION,
+    Position, ROBOT_LIST, RobotList,
 };
 
 /// A robot with a bug, which shows itself with some seeds alone.
@@ -24,6 +25,8 @@ struct Planted {
     luggage: Publisher<EventLuggage>,
     #[publishes(CRITICAL_SITUATION)]
     helps: Publisher<CriticalSituation>,
+    #[publishes(AREA)]
+    areas: Publisher<Area>,
     /// The execution in which it does so.
     bad: Option<u64>,
 }
@@ -48,6 +51,10 @@ impl Component for Planted {
             context.send(&self.luggage, EventLuggage { robot: 0, ..says(LuggageStage::Request) })?;
         }
         let (is_bad, bug) = (self.bad == Some(now), self.bug.as_str());
+        if now == 0 && bug == "uncounted" {
+            // It is the world, too, which counts what is delivered.
+            context.send(&self.areas, Area::from(&Map::new(5, 5)))?;
+        }
         let battery = match bug {
             "battery" if is_bad => 0.0,
             "clock" => {
@@ -80,7 +87,7 @@ impl Component for Planted {
             "open" if self.bad.is_some() => Ok(()),
             "clock" | "deadlock" | "broken" => Ok(()),
             _ if now == 1 => {
-                context.count("luggage.delivered", 1);
+                context.count("luggage.delivered", i64::from(bug != "uncounted" || self.bad.is_none()));
                 context.send(&self.luggage, says(LuggageStage::Delivered))
             }
             _ => Ok(()),
