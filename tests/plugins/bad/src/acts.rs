@@ -115,7 +115,7 @@ pub fn act(does: &str, place: &str) -> Result<(), Failure> {
         }
         "index" => drop(hint::black_box(Vec::<u32>::new())[hint::black_box(3)]),
         // SAFETY: as before.
-        "environment" => unsafe { std::env::set_var("HOME", "/nowhere") },
+        "environment" => unsafe { std::env::set_var("SAOMS_TEST_VARIABLE", "changed") },
         "folder" => std::env::set_current_dir("/")?,
         "print" => (0..100_000).try_for_each(|_| writeln!(stdout(), "{}", "x".repeat(1023)))?,
         "forget" => std::mem::forget(vec![0_u8; 1 << 20]),
