@@ -1,6 +1,7 @@
 //! Client of the zones of a robot's site, which grant it the blocks that it enters.
 
 mod latency;
+mod presence;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -52,6 +53,8 @@ pub(crate) struct ZoneClient {
     said_charger: Block,
     /// Number of times when a repetition of where it is was due, since it last changed whether it can move.
     due: u32,
+    /// The [round](presence) of its last execution in which it could not move.
+    lost_round: u128,
     /// For repetitions of what loops said; `None` where the robot has no loop that says it.
     pub(super) positions: Option<Publisher<Position>>,
     pub(super) robots: Option<Publisher<RobotList>>,
@@ -145,6 +148,7 @@ impl ZoneClient {
             said_lost: None,
             said_charger: Block::default(),
             due: 0,
+            lost_round: 0,
             positions: None,
             robots: None,
             said: None,
@@ -445,72 +449,11 @@ impl ZoneClient {
         }
         let is_lost = wish.standing == Standing::Lost;
         let is_news = is_lost != self.said_lost.unwrap_or(false) || wish.charger != self.said_charger;
-        if std::mem::take(&mut self.is_asked) || is_news {
+        if std::mem::take(&mut self.is_asked) || is_news || is_lost && self.is_next_round(context) {
             self.said_charger = wish.charger;
             self.tell_presence(context, is_lost)?;
         }
         Ok(())
-    }
-
-    /// Repeats where the robot is, after twice as many times as before, since no zone confirms it.
-    ///
-    /// # Errors
-    /// The message cannot be sent.
-    pub(crate) fn repeat_presence(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.due = self.due.saturating_add(1);
-        match self.due.is_power_of_two() {
-            true => self.tell_presence(context, self.said_lost.unwrap_or(false)),
-            false => Ok(()),
-        }
-    }
-
-    /// Repeats the messages of the robot's loops about itself, after twice as many times as before unless they change.
-    ///
-    /// # Errors
-    /// The messages cannot be sent.
-    pub(crate) fn repeat_state(
-        &mut self,
-        position: Position,
-        robot: RobotList,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
-        let said = (position, robot);
-        if self.said.as_ref() != Some(&said) {
-            self.state_due = 0;
-        }
-        self.state_due = self.state_due.saturating_add(1);
-        if self.state_due.is_power_of_two() {
-            let (position, robot) = said.clone();
-            self.positions.as_ref().map_or(Ok(()), |positions| context.send(positions, position))?;
-            self.robots.as_ref().map_or(Ok(()), |robots| context.send(robots, robot))?;
-        }
-        self.said = Some(said);
-        Ok(())
-    }
-
-    /// Says where the robot is, to all zones.
-    ///
-    /// # Errors
-    /// The message cannot be sent.
-    fn tell_presence(&mut self, context: &mut Context<'_>, is_lost: bool) -> Result<(), Failure> {
-        let Some(passage) = &self.passage else { return Ok(()) };
-        if is_lost || self.said_lost.is_some() {
-            if self.said_lost != Some(is_lost) {
-                self.due = 0;
-            }
-            self.said_lost = Some(is_lost);
-        }
-        let block = passage.held().first().map_or(Block::default(), |held| held.step.block);
-        let presence = Presence {
-            robot: passage.robot(),
-            incarnation: passage.incarnation(),
-            block,
-            end: passage.end(),
-            is_lost,
-            charger: self.said_charger,
-            clear: passage.clear(),
-        };
-        context.send(&self.presences, presence)
     }
 }
 
