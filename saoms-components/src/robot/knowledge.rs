@@ -274,7 +274,9 @@ impl RobotKnowledge {
         let Variables { transporter, healer, critical, .. } = self.variables;
         let has_work = self.job.is_some() || self.untold.is_some() || transporter || healer || critical;
         let knows_work = !self.lists.requests.open().is_empty() || !self.lists.helps.open().is_empty();
-        let is_idle = self.hardware.has_entered() && self.block == self.next && self.trouble.is_none();
+        // A charger that gives nothing may give something later.
+        let is_idle =
+            self.hardware.has_entered() && self.block == self.next && self.trouble.is_none() && !self.must_charge;
         (is_idle && !has_work && !knows_work && !self.offers_help).then(|| "luggage".to_owned())
     }
 

@@ -12,9 +12,11 @@ use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageSta
 use crate::robot::Policy;
 
 /// Number of periods of the slowest robot for which a robot that took no job is not asked again. It doubles each time,
-/// as often as [`DOUBLED`].
+/// as often as [`DOUBLED`], and beyond that while there is no news of the robot, so that a run ends in which nothing
+/// changes any more.
 const REST: u32 = 8;
 const DOUBLED: u32 = 6;
+const MOST_DOUBLED: u32 = 20;
 
 /// Number of periods of the slowest robot within which a robot answers where messages arrive at once.
 const ANSWER: u32 = 8;
@@ -100,6 +102,20 @@ impl Member {
     pub(super) fn period(&self) -> u64 {
         self.period
     }
+
+    /// Notes that the robot is heard, and whether there is news of it. True if it may be asked again because of that.
+    fn hear(&mut self, is_news: bool) -> bool {
+        let (is_back, may_take) = (self.silent > DOUBLED, is_news && self.handed_back > DOUBLED);
+        if self.asked.is_some() || !(is_back || may_take) {
+            return false;
+        }
+        self.silent = self.silent.min(DOUBLED);
+        if may_take {
+            self.handed_back = DOUBLED;
+        }
+        self.until = Time::START;
+        true
+    }
 }
 
 impl Field for Crew {
@@ -180,7 +196,8 @@ impl Crew {
             self.changed = true;
             Member { robot: said.robot, block: said.block, ..Member::default() }
         });
-        self.changed |= member.asleep != said.asleep;
+        let is_news = (member.charger, member.battery, member.asleep) != (said.charger, said.battery, said.asleep);
+        self.changed |= member.hear(is_news) || member.asleep != said.asleep;
         let fills_up = said.battery >= 100.0 && member.battery < 100.0;
         if fills_up && member.handed_back > 0 && member.asked.is_none() {
             // Its battery may last now for what it handed back.
@@ -227,7 +244,7 @@ impl Crew {
         match said.stage {
             LuggageStage::Taken => {
                 (member.job, member.asked, member.collected) = (luggage, None, false);
-                (member.handed_back, member.withdrawn) = (0, None);
+                (member.handed_back, member.withdrawn, member.until) = (0, None, now);
                 (member.engaged, member.elsewhere) = (false, None);
             }
             LuggageStage::Delivered | LuggageStage::Refused | LuggageStage::GivenUp | LuggageStage::Release => {
@@ -236,7 +253,7 @@ impl Crew {
                     (member.job, member.until, member.engaged) = (None, now, false);
                 } else if member.asked == luggage && said.stage == LuggageStage::Release {
                     member.until = now + rest.saturating_mul(1 << member.handed_back);
-                    member.handed_back = (member.handed_back + 1).min(DOUBLED);
+                    member.handed_back = (member.handed_back + 1).min(MOST_DOUBLED);
                 }
                 member.asked.take_if(|asked| Some(*asked) == luggage);
                 member.withdrawn.take_if(|withdrawn| Some(*withdrawn) == luggage);
@@ -338,6 +355,7 @@ impl Crew {
     /// Handles where a robot is.
     pub(super) fn hear_position(&mut self, said: &Position, from: Option<Block>, now: Time) {
         let Some(member) = self.members.get_mut(&said.robot) else { return };
+        self.changed |= member.hear(member.block != said.block);
         if member.block != said.block {
             let took = now.since(member.moved);
             if member.block.distance(said.block) == 1 && member.moved > Time::START && !took.is_zero() {
@@ -371,7 +389,7 @@ impl Crew {
         let answer = self.slowest().saturating_mul(ANSWER).max(self.answers_take.saturating_mul(2));
         if let Some(member) = self.members.get_mut(&robot) {
             (member.asked, member.asked_at) = (Some(luggage), now);
-            member.until = now + answer.saturating_mul(1 << member.silent);
+            member.until = now + answer.saturating_mul(1 << member.silent.min(DOUBLED));
             self.sort(robot);
         }
     }
@@ -386,7 +404,7 @@ impl Crew {
     /// Robots that did not answer in time, with the luggage that was assigned to them. They are not asked again soon.
     /// For an answer to a visit the master waits for ever: the robot may have done it.
     pub(in crate::master) fn take_silent(&mut self, now: Time) -> Vec<(u32, u32)> {
-        let rest = now + self.slowest().saturating_mul(8 * REST);
+        let rest = self.slowest().saturating_mul(8 * REST);
         let over = self.unanswered.extract_if(.., |(_, _, until)| *until <= now);
         let mut silent: Vec<(u32, u32)> = over.map(|(robot, luggage, _)| (robot, luggage)).collect();
         for robot in self.asked.iter().copied().collect::<Vec<_>>() {
@@ -394,8 +412,9 @@ impl Crew {
             if let Some(member) = self.members.get_mut(&robot).filter(is_late)
                 && let Some(luggage) = member.asked.take()
             {
-                (member.until, member.late, member.late_at) = (rest, Some(luggage), member.asked_at);
-                member.silent = (member.silent + 1).min(DOUBLED);
+                let rest = rest.saturating_mul(1 << member.silent.saturating_sub(DOUBLED));
+                (member.until, member.late, member.late_at) = (now + rest, Some(luggage), member.asked_at);
+                member.silent = (member.silent + 1).min(MOST_DOUBLED);
                 silent.push((robot, luggage));
                 self.sort(robot);
             }

@@ -162,10 +162,10 @@ impl MasterEnvironmentKnowledge {
         self.open.is_discussed(piece.job.luggage, now)
     }
 
-    /// Robots on the way to luggage that they have not collected.
-    pub(super) fn on_the_way(&self) -> Vec<(Candidate, WaitingPiece)> {
+    /// Robots on the way to luggage that they have not collected, and that may be asked to bring other luggage.
+    pub(super) fn on_the_way(&self, now: Time) -> Vec<(Candidate, WaitingPiece)> {
         let on_the_way = self.crew.members().filter(|member| {
-            let is_told = member.asked.is_some() || member.withdrawn.is_some();
+            let is_told = member.asked.is_some() || member.withdrawn.is_some() || member.until > now;
             !(member.collected || is_told)
         });
         let with_piece = on_the_way.filter_map(|member| {

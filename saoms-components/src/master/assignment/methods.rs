@@ -156,7 +156,7 @@ pub(super) fn optimal(knowledge: &MasterEnvironmentKnowledge, now: Time) -> Vec<
     let mut robots = knowledge.candidates(now);
     let mut orders = visits(knowledge, &mut robots);
     let mut pieces: Vec<WaitingPiece> = knowledge.open.waiting().filter(|piece| piece.only.is_none()).collect();
-    let on_the_way = knowledge.on_the_way();
+    let on_the_way = knowledge.on_the_way(now);
     if robots.len() + on_the_way.len() > MATCHED {
         orders.extend(many(knowledge, robots, pieces, now));
         return orders;

@@ -212,6 +212,18 @@ fn a_run_without_its_master_or_world_ends_and_says_what_it_waits_for() {
     "#]].assert_eq(&ends);
 }
 
+/// Robots whose world does not run cannot even say that their battery is empty, and hand back all luggage.
+#[test]
+fn a_master_that_assigns_asks_robots_without_a_world_ever_less_often() {
+    let later = "at 3s fail World; at 9s luggage (3,3) to (5,5); at 9s luggage (5,3) to (5,7)";
+    for assignment in ["oldest", "optimal"] {
+        let fleet = fleet_with(SITES[0], assignment, &format!("{THREE} {later}"), &TEAM);
+        let run = fleet.with_severity("S5028", "allow").run(1, LIMIT);
+        let told = run.standstill.as_ref().unwrap_or_else(|| panic!("{assignment}: {}", run.log())).to_string();
+        assert!(told.contains("`Robot1` and 2 more wait for its world, which does not run"), "{assignment}: {told}");
+    }
+}
+
 #[test]
 fn a_robot_is_stopped_since_it_is_late() {
     let expected = "Failed: 3 of 3 delivered, 0 given up, 0 collisions";
