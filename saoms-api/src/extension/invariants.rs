@@ -20,14 +20,25 @@ pub trait RunInvariants: Send {
     /// programs included; without any for a fault of messages.
     fn fault(&mut self, at: Time, call: &FaultCall, concerned: &[ConcernedComponent]);
 
-    /// Takes in the end of the run. `is_cut_off` is true if something from outside ended it, such as a time limit.
-    fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>);
+    /// Takes in the end of the run.
+    fn end(&mut self, at: Time, end: RunEnd, counts: &Counts<'_>);
 
     /// The violations since the last call.
     fn violations(&mut self) -> Vec<Violation>;
 
     /// What the run came to, after its end.
     fn measures(&self) -> Vec<Measure>;
+}
+
+/// Ways in which a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunEnd {
+    /// No work is left, or it has failed.
+    Own,
+    /// Something from outside ended it, such as a time limit.
+    CutOff,
+    /// Nothing can happen any more, although work is left: what has not happened never does.
+    Standstill,
 }
 
 /// A component that a fault concerns.

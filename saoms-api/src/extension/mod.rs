@@ -31,7 +31,9 @@ pub use crate::time::DURATION_UNITS;
 pub use curves::{Curve, CurvesRegistration, RunCurves};
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};
-pub use invariants::{ConcernedComponent, ConcernedTopic, InvariantsRegistration, Measure, RunInvariants, Violation};
+pub use invariants::{
+    ConcernedComponent, ConcernedTopic, InvariantsRegistration, Measure, RunEnd, RunInvariants, Violation,
+};
 pub use language::{
     Completion, CompletionKind, Explanation, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, RaisedEvent,
     RaisedFault,

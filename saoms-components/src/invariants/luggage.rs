@@ -112,7 +112,7 @@ impl Pieces {
     /// Looks for pieces that nobody takes over.
     pub(super) fn look(&mut self, tide: &Tide, period: u64, finder: &mut Finder<'_>) {
         let at = finder.at;
-        let is_late = |since: Time| tide.calm(since, at).is_some_and(|time| time > bound(period));
+        let is_late = |since: Time| tide.calm(since, at).is_some_and(|time| tide.is_too_long(time, bound(period)));
         let late: Vec<(u32, u32)> = self
             .stranded
             .iter()

@@ -16,7 +16,7 @@ use std::time::Duration;
 use saoms_api::Time;
 use saoms_api::event::fault::{FaultCall, FaultKind};
 use saoms_api::extension::{
-    ConcernedComponent, Counts, InvariantsRegistration, Measure, RunInvariants, Violation, submit,
+    ConcernedComponent, Counts, InvariantsRegistration, Measure, RunEnd, RunInvariants, Violation, submit,
 };
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
@@ -196,8 +196,12 @@ impl RunInvariants for FleetInvariants {
         }
     }
 
-    fn end(&mut self, at: Time, is_cut_off: bool, counts: &Counts<'_>) {
+    fn end(&mut self, at: Time, end: RunEnd, counts: &Counts<'_>) {
+        if end == RunEnd::Standstill {
+            self.tide.turns_no_more();
+        }
         self.look(at);
+        let is_cut_off = end == RunEnd::CutOff;
         let (mut delivered, mut told, mut requested, mut waits) = (0, 0, 0, Vec::new());
         for (site, Site { robots, pieces, has_world, has_stopped }) in &mut self.sites {
             let mut finder = Finder { site, at, found: &mut self.found };

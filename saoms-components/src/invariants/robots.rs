@@ -177,7 +177,7 @@ impl Robots {
         for (number, robot) in &mut self.all {
             let Some((luggage, since)) = robot.job.filter(|_| !robot.is_out && !robot.stands_still) else { continue };
             let stood = tide.calm(since.max(robot.moved).max(charged_beside(robot.block)), finder.at);
-            if let Some(time) = stood.filter(|time| *time > bound(robot.period)) {
+            if let Some(time) = stood.filter(|time| tide.is_too_long(*time, bound(robot.period))) {
                 robot.stands_still = true;
                 let block = robot.block.map(|block| format!(" at {block}")).unwrap_or_default();
                 let time = time.as_secs();

@@ -11,6 +11,8 @@ pub(super) struct Tide {
     is_endless: bool,
     /// True if events are lost for good: requests need not be finished then.
     loses_events: bool,
+    /// True once nothing can happen any more.
+    stands_still: bool,
 }
 
 impl Tide {
@@ -46,6 +48,16 @@ impl Tide {
     pub(super) fn calm(&self, since: Time, now: Time) -> Option<Duration> {
         let since = since.max(self.until);
         (!self.is_endless && now > since).then(|| now.since(since))
+    }
+
+    /// Notes that nothing can happen any more.
+    pub(super) fn turns_no_more(&mut self) {
+        self.stands_still = true;
+    }
+
+    /// True if something that has not happened for a time counts as never happening, where it may take so long.
+    pub(super) fn is_too_long(&self, time: Duration, bound: Duration) -> bool {
+        self.stands_still || time > bound
     }
 
     /// True if requests need not be finished.

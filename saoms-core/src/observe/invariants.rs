@@ -1,7 +1,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use saoms_api::Time;
-use saoms_api::extension::{InvariantsRegistration, Measure, RunInvariants, Violation};
+use saoms_api::extension::{InvariantsRegistration, Measure, RunEnd, RunInvariants, Violation};
 use saoms_api::host::TopicDeclaration;
 
 use super::{Interest, Observer, Occurrence, RunEvent, SentMessage};
@@ -64,8 +64,11 @@ impl Observer for InvariantWatch {
 
     fn end(&self, report: &RunReport) {
         let at = Time::from_nanos((report.time_s * 1e9) as u64);
-        let status = report.outcome.status;
-        let is_cut_off = matches!(status, RunStatus::Elapsed | RunStatus::Stopped | RunStatus::Interrupted);
-        self.all().iter_mut().for_each(|one| one.end(at, is_cut_off, &|path| report.count(path)));
+        let end = match report.outcome.status {
+            _ if report.standstill.as_ref().is_some_and(|standstill| standstill.ends) => RunEnd::Standstill,
+            RunStatus::Elapsed | RunStatus::Stopped | RunStatus::Interrupted => RunEnd::CutOff,
+            RunStatus::Done | RunStatus::Incomplete | RunStatus::Failed => RunEnd::Own,
+        };
+        self.all().iter_mut().for_each(|one| one.end(at, end, &|path| report.count(path)));
     }
 }

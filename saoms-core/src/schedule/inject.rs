@@ -182,6 +182,11 @@ impl Injections {
         self.holds == 0 && self.waiting.len() == self.faults + self.commits
     }
 
+    /// True if faults are still to begin.
+    pub(super) fn have_faults(&self) -> bool {
+        self.faults > 0
+    }
+
     /// Takes the commits out: components and the numbers of batches.
     pub(super) fn take_commits(&mut self) -> Vec<(u32, u64)> {
         let commits = self.waiting.extract_if(.., |_, due| matches!(due, Due::Commit { .. }));

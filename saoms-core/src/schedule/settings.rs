@@ -29,6 +29,9 @@ pub struct Settings {
     /// Time in which nothing happens, although work is left, after which components are asked what they wait for. If
     /// all of them wait, the run stands still: that is told, or ends it.
     pub quiet: Duration,
+    /// True if a standstill ends a run in virtual time that has a [`limit`](Settings::limit), too. One without a limit
+    /// it ends in any case.
+    pub ends_at_standstill: bool,
     /// Number of journal records in memory, divided evenly among the components; each keeps its newest 128 at least.
     /// Records that are older are overwritten and counted.
     pub journal: usize,
@@ -62,6 +65,7 @@ impl Default for Settings {
             grace: Duration::from_secs(2),
             virtual_watchdog: Duration::from_secs(10),
             quiet: Duration::from_secs(60),
+            ends_at_standstill: false,
             journal: 65_536,
             commit_delay: Duration::from_millis(5),
             faults: Vec::new(),

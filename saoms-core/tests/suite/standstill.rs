@@ -6,6 +6,7 @@ use saoms_core::schedule::Settings;
 
 use serde_json::json;
 
+use crate::fault::faults as faults_of;
 use crate::fleet::{check, outcome, real, run, simulated, start};
 
 /// The outcome and the diary of a fleet that runs without a limit.
@@ -53,6 +54,32 @@ fn with_a_limit_a_standstill_is_told_and_the_run_goes_on() {
         serde_json::to_value(report.standstill).unwrap(),
         json!({"since_s": 0.0, "ends": false, "waiting": waiting})
     );
+}
+
+#[test]
+fn a_standstill_ends_a_run_with_a_limit_where_the_settings_say_so() {
+    let ending = |limit: u64| Settings { ends_at_standstill: true, ..simulated(limit) };
+    let told = "nothing has happened since 0.000 s, and nothing more can: `A` waits for parcels";
+    assert_eq!(outcome(&run(OPEN, ending(90_000)).0), format!("Incomplete after 60 s\n- {told}"));
+    assert_eq!(outcome(&run(OPEN, ending(50_000)).0), "Elapsed after 50 s");
+}
+
+#[test]
+fn a_fault_that_ends_or_is_still_to_come_may_let_a_fleet_go_on() {
+    let fleet = "A actor period=10 publishes=TALK each=[0: open] waits=[parcels]
+                 B actor period=10 subscribes=TALK each=[hear] waits=[news]";
+    for (faults, end) in [
+        (&["0 for 200s part A from B"][..], 260),
+        (&["100000 for 30s lose 20 %"], 190),
+        (&["100000 crash B restart 50s"], 210),
+        // One that never ends heals nothing.
+        (&["0 part A from B"], 60),
+    ] {
+        let settings = Settings { faults: faults_of(faults), ..Settings::simulated(7) };
+        let (fleet, _) = start(fleet, settings);
+        let outcome = outcome(&fleet.unwrap().run_to_end());
+        assert!(outcome.starts_with(&format!("Incomplete after {end}")), "{faults:?}: {outcome}");
+    }
 }
 
 #[test]

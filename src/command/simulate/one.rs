@@ -31,6 +31,9 @@ pub(super) struct SeedResult {
     /// How the run ended, as its report says it.
     pub(super) status: String,
     pub(super) reasons: Vec<String>,
+    /// What stands still, if that ended the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) standstill: Option<String>,
     pub(super) time_s: f64,
     pub(super) periods: u64,
     pub(super) trace_hash: Option<String>,
@@ -107,7 +110,8 @@ impl Simulation {
     /// Runs a seed with these events once.
     pub(super) fn run_with(&self, seed: u64, events: Vec<PlannedEvent>) -> SeedResult {
         let watch = Arc::new(InvariantWatch::default());
-        let settings = Settings { limit: Some(self.limit), journal: 0, ..Settings::simulated(seed) };
+        let settings =
+            Settings { limit: Some(self.limit), ends_at_standstill: true, journal: 0, ..Settings::simulated(seed) };
         let mut observers = vec![Arc::clone(&watch) as Arc<dyn Observer>];
         if self.is_measured {
             observers.push(Arc::new(AdaptationWatch::default()));
@@ -147,6 +151,7 @@ impl Simulation {
                 .and_then(|one| one.as_str().map(str::to_owned))
                 .unwrap_or_default(),
             reasons: report.outcome.reasons,
+            standstill: report.standstill.filter(|one| one.ends).map(|one| one.to_string()),
             time_s: report.time_s,
             periods: report.periods,
             trace_hash: report.trace_hash,

@@ -230,6 +230,10 @@ impl Table {
     pub(super) fn failures(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let faults = self.faults().into_iter().map(|(kind, count)| format!("{kind} {count}"));
         row(formatter, "faults applied", &listed(faults.collect()))?;
+        let stand = || self.results.iter().filter_map(|result| Some((result.seed, result.standstill.as_ref()?)));
+        if let Some((seed, first)) = stand().next() {
+            row(formatter, "standstills", &format!("{}, first seed {seed}: {first}", stand().count()))?;
+        }
         let violations = self.violations();
         if violations.is_empty() {
             return row(formatter, "violations", "none");
@@ -241,6 +245,9 @@ impl Table {
         for (result, replay) in failing.clone().zip(&self.replays) {
             let Some(first) = result.violations.first() else { continue };
             writeln!(formatter, "\nseed {}: [{:.3} s] {}: {}", result.seed, first.at_s, first.invariant, first.text)?;
+            if let Some(standstill) = &result.standstill {
+                writeln!(formatter, "  it stands still: {standstill}")?;
+            }
             writeln!(formatter, "  {}", replay.command)?;
             match replay.faults.as_deref() {
                 None => {}

@@ -112,6 +112,33 @@ fn robots_with_a_full_battery_leave_a_charger_to_others_however_late_zones_answe
     assert!(told.contains("24 of 24"), "{told}");
 }
 
+/// Without a robot nobody brings the luggage; `saoms run --virtual` ends there, too, where it has no `--for`.
+#[test]
+fn a_standstill_ends_a_run_and_is_named() {
+    let folder = empty_folder("simulate-standstill");
+    let hall = fs::read_to_string(root().join("composites/hall.composite")).unwrap();
+    let (before, after) = hall.split_once("  <component name=\"Robot7\">").unwrap();
+    let (_, after) = after.split_once("</component>").unwrap();
+    fs::write(folder.join("hall.composite"), [before, after].concat()).unwrap();
+    let (code, told, _) = simulate_file(&folder, "hall.composite", &["--seeds", "2"]);
+    assert_eq!(code, Some(1), "{told}");
+    let stands = "nothing has happened since 1.100 s, and nothing more can: `World` waits for a robot";
+    for row in [
+        "runs                       incomplete 2\n",
+        &format!("standstills                2, first seed 0: {stands}"),
+        "violations                 2 in 2 seeds: 7 requests are finished once faults are over\n",
+        &format!("\n  it stands still: {stands}"),
+    ] {
+        assert!(told.contains(row), "{row}: {told}");
+    }
+    // A fault that begins later may start something.
+    fs::write(folder.join("faults.txt"), "at 2min crash World restart 1s\n").unwrap();
+    let arguments = ["--seeds", "1", "--faults", "faults.txt", "--report", "json"];
+    let (_, told, _) = simulate_file(&folder, "hall.composite", &arguments);
+    let report: Value = serde_json::from_str(&told).unwrap();
+    assert!(report["results"][0]["time_s"].as_f64().unwrap() > 180.0, "{told}");
+}
+
 #[test]
 fn wrong_input_starts_nothing() {
     let folder = empty_folder("simulate-wrong");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use saoms_api::event::fault::{FaultCall, names_component};
+use saoms_api::event::fault::{FaultCall, FaultKind, names_component};
 use saoms_api::extension::{ConcernedComponent, ConcernedTopic};
 use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Cause, Level};
@@ -14,6 +14,7 @@ use crate::bus::{Link, TopicId};
 use crate::fault::{Arrival, End, FaultPlay, OnLink};
 use crate::observe::Occurrence;
 use crate::schedule::networks::Networks;
+use crate::schedule::settings::nanos;
 
 fn end(number: u32, slot: &Slot) -> End<'_> {
     End { number, path: &slot.name, site: &slot.spec.site, node: &slot.spec.node }
@@ -58,6 +59,10 @@ impl Engine {
     /// Begins a fault, which the journal has as the record `cause`.
     #[cold]
     pub(crate) fn begin_fault(&mut self, (call, cause): (&FaultCall, Cause), site: &str, now: u64) {
+        let restart = if let FaultKind::Crash { restart } = call.kind { restart } else { None };
+        if let Some(time) = call.lasting.max(restart) {
+            self.standstill.note_fault(now.saturating_add(nanos(time)));
+        }
         let concerned = if call.kind.is_of_messages() { Vec::new() } else { self.concerned_by(call, site) };
         self.note(now, Occurrence::Fault { call: call.clone(), concerned });
         if call.kind.is_of_messages() {

@@ -230,7 +230,7 @@ impl Engine {
             reasons: Vec::new(),
             ended: (0, 0),
             votes: VoteTally::default(),
-            standstill: StandstillDetector::new(nanos(settings.quiet)),
+            standstill: StandstillDetector::new(settings),
             questions: Questions::default(),
             look_at: 0,
             limit: settings.limit.map_or(NEVER, nanos),

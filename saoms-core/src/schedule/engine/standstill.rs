@@ -9,6 +9,7 @@ use super::{Engine, Next};
 use crate::observe::Occurrence;
 use crate::report::{Standstill, Waiting};
 use crate::schedule::component::body::Job;
+use crate::schedule::settings::{Settings, nanos};
 
 /// Time without an effect after which the standstill is told even if components may still act: one hour.
 const LONG: u64 = 3_600_000_000_000;
@@ -18,28 +19,35 @@ const LONG: u64 = 3_600_000_000_000;
 pub(crate) struct StandstillDetector {
     /// Time of the last effect: a message, a record of the journal, a vote, or a change in the life of a component.
     last_effect: u64,
+    /// The latest end of the faults that have begun and that end: what they hold up may go on then.
+    faults_until: u64,
     /// Time without an effect after which components are asked; [`NEVER`] once a standstill was told.
     patience: u64,
-    /// The effect and the patience of the present round of questions, and the next component to ask.
+    /// Since when it was quiet, and the patience, of the present round of questions, and the next component to ask.
     round: (u64, u64),
     next: usize,
     /// Number of components that were asked on worker threads in the present round, and have not answered.
     unanswered: usize,
-    /// See [`Settings::quiet`](crate::schedule::Settings::quiet), in nanoseconds.
+    /// See [`Settings::quiet`], in nanoseconds.
     quiet: u64,
+    /// See [`Settings::ends_at_standstill`].
+    ends_with_limit: bool,
     /// The standstill that was told.
     pub(crate) told: Option<Standstill>,
 }
 
 impl StandstillDetector {
-    pub(super) fn new(quiet: u64) -> StandstillDetector {
+    pub(super) fn new(settings: &Settings) -> StandstillDetector {
+        let quiet = nanos(settings.quiet);
         StandstillDetector {
             last_effect: 0,
+            faults_until: 0,
             patience: quiet,
             round: (NEVER, 0),
             next: 0,
             unanswered: 0,
             quiet,
+            ends_with_limit: settings.ends_at_standstill,
             told: None,
         }
     }
@@ -50,20 +58,31 @@ impl StandstillDetector {
         self.last_effect = now;
     }
 
+    /// Notes a fault that ends at a time.
+    pub(crate) fn note_fault(&mut self, until: u64) {
+        self.faults_until = self.faults_until.max(until);
+    }
+
+    /// The time since which nothing has happened, and no fault was in the way.
+    fn quiet_since(&self) -> u64 {
+        self.last_effect.max(self.faults_until)
+    }
+
     /// The earliest time at which there is something to ask or to tell, after all that there was at a time.
     pub(crate) fn next_look(&self, now: u64) -> u64 {
-        let quiet = self.last_effect.saturating_add(self.patience);
+        let since = self.quiet_since();
+        let quiet = since.saturating_add(self.patience);
         if now < quiet {
             return quiet;
         }
         // All were asked: only an effect begins another round, or an hour without one.
-        let long = self.last_effect.saturating_add(LONG);
+        let long = since.saturating_add(LONG);
         now.saturating_add(self.quiet).min(if now < long { long } else { NEVER })
     }
 
     #[inline]
     pub(crate) fn is_quiet(&self, now: u64) -> bool {
-        now.saturating_sub(self.last_effect) >= self.patience
+        now.saturating_sub(self.quiet_since()) >= self.patience
     }
 }
 
@@ -77,10 +96,11 @@ impl Engine {
             return None;
         }
         let detector = &mut self.standstill;
-        if detector.patience < LONG && now.saturating_sub(detector.last_effect) >= LONG {
+        let since = detector.quiet_since();
+        if detector.patience < LONG && now.saturating_sub(since) >= LONG {
             detector.patience = LONG;
         }
-        let round = (detector.last_effect, detector.patience);
+        let round = (since, detector.patience);
         if detector.round != round {
             detector.round = round;
             // Without a vote there is work to tell of only where a component waits to be started.
@@ -129,14 +149,16 @@ impl Engine {
     }
 
     fn judge_standstill(&mut self, now: u64) {
-        let since = self.standstill.last_effect;
-        let is_certain =
-            self.injections.are_over() && self.uncommitted == 0 && self.slots.iter().all(|slot| !slot.may_act(since));
+        let since = self.standstill.quiet_since();
+        // A fault that is still to come may be one that starts a component again.
+        let nothing_comes = self.injections.are_over() && !self.injections.have_faults() && self.uncommitted == 0;
+        let is_certain = nothing_comes && self.slots.iter().all(|slot| !slot.may_act(since));
         if !is_certain && self.standstill.patience < LONG {
             return;
         }
-        let ends = is_certain && !self.real && self.limit == NEVER && self.pause == NEVER;
-        let standstill = self.standstill(since, ends);
+        let may_end = self.standstill.ends_with_limit || self.limit == NEVER;
+        let ends = is_certain && may_end && !self.real && self.pause == NEVER;
+        let standstill = self.standstill(self.standstill.last_effect, ends);
         self.standstill.patience = NEVER;
         match ends {
             // The outcome of the run tells it.
