@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicU32;
 use crate::Time;
 use crate::event::Events;
 use crate::host::TopicDeclaration;
-use crate::rule::FleetView;
+use crate::rule::{Code, FleetView};
 
 /// A language of events from outside the fleet: `saoms run --events` reads lines of it.
 ///
@@ -86,8 +86,8 @@ pub struct LineFault {
     pub instead: Option<String>,
     /// Advice.
     pub help: Option<String>,
-    /// The code of the rule over fleets that finds it, whose severity users can set.
-    pub code: Option<&'static str>,
+    /// The code of the rule over fleets that finds it, whose severity users can set; without one it is an error.
+    pub code: Option<&'static Code>,
 }
 
 impl LineFault {
@@ -110,7 +110,7 @@ impl LineFault {
 
     /// The same fault, found by a rule over fleets.
     #[must_use]
-    pub fn code(self, code: &'static str) -> LineFault {
+    pub fn code(self, code: &'static Code) -> LineFault {
         LineFault { code: Some(code), ..self }
     }
 

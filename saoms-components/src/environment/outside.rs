@@ -16,6 +16,7 @@ use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
 use crate::rules::peers::judge_disturbance;
 use crate::rules::scenario::{judge_luggage, judge_outage, judge_robot, no_work};
+use crate::rules::worlds::judge_crash;
 use crate::text::{TextFault, bytes};
 
 submit! {
@@ -164,6 +165,8 @@ fn place_is_known(line: &Line) -> Result<(), TextFault> {
 
 /// Judges the events of a line that was read without a fault.
 fn judge(fleet: &FleetView<'_>, events: &Events, line: &str) -> Result<(), LineFault> {
+    // A warning hides no error.
+    let mut warned = Ok(());
     for part in split(line) {
         let Ok((read, _)) = read_outside(part, Before::Event, Vocabulary::with(events)) else { continue };
         let offset = bytes(line, part).start;
@@ -172,8 +175,10 @@ fn judge(fleet: &FleetView<'_>, events: &Events, line: &str) -> Result<(), LineF
             .and_then(|()| judge_luggage(fleet, &read.event))
             .and_then(|()| judge_disturbance(fleet, &read.event, read.bytes.clone()));
         judged.map_err(|fault| fault.moved(offset))?;
+        let crash = judge_crash(fleet, &read.event, read.bytes.clone());
+        warned = warned.and(crash.map_err(|fault| fault.moved(offset)));
     }
-    Ok(())
+    warned
 }
 
 impl EventReader for Reader {

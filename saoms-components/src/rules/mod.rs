@@ -22,7 +22,7 @@ mod shifts;
 mod start;
 mod sustain;
 mod unlikely;
-mod worlds;
+pub(crate) mod worlds;
 mod zones;
 
 saoms_api::fleet_rules!(
@@ -56,4 +56,5 @@ saoms_api::fleet_rules!(
     masters::FORGETS,
     sustain::crowded::RULE,
     zones::nodes::RULE,
+    worlds::forgets::RULE,
 );

@@ -89,7 +89,7 @@ pub(crate) fn judge_disturbance(
     bytes: Range<usize>,
 ) -> Result<(), LineFault> {
     match disturbance(fleet, &peers(fleet), event) {
-        Some((message, _)) => Err(LineFault::new(bytes, message).help(HELP).code(FAULTS.code.id)),
+        Some((message, _)) => Err(LineFault::new(bytes, message).help(HELP).code(&FAULTS.code)),
         None => Ok(()),
     }
 }

@@ -39,7 +39,8 @@ pub(in crate::command) struct PlannedEvent {
 pub(in crate::command) struct Planned {
     /// Its events.
     pub(in crate::command) events: Vec<PlannedEvent>,
-    /// What would be wrong with its lines, but for severities that the command line sets; for people.
+    /// Warnings about its lines, and what would be wrong with them but for severities that the command line sets; for
+    /// people.
     pub(in crate::command) lowered: Vec<String>,
 }
 
@@ -149,7 +150,8 @@ impl FaultScript {
             };
             all.extend(planned);
             let Some(fault) = fault else { continue };
-            let level = fault.code.and_then(|code| known.level(code)).unwrap_or(SeverityLevel::Set(Severity::Error));
+            let usual = SeverityLevel::Set(fault.code.map_or(Severity::Error, |code| code.severity));
+            let level = fault.code.and_then(|code| known.level(code.id)).unwrap_or(usual);
             let text = self.said(number, line, level, &fault);
             match level {
                 SeverityLevel::Set(Severity::Error) => wrong.push(text),
@@ -164,7 +166,9 @@ impl FaultScript {
     fn said(&self, number: usize, line: &str, level: SeverityLevel, fault: &LineFault) -> String {
         let column = line.get(..fault.bytes.start).map_or(1, |before| before.chars().count() + 1);
         let place = format!("{}:{number}:{column}", self.path);
-        let Some(code) = fault.code else { return format!("{}: {place}: {}\n", level.name(), shown(line, fault)) };
+        let Some(code) = fault.code.map(|code| code.id) else {
+            return format!("{}: {place}: {}\n", level.name(), shown(line, fault));
+        };
         let anyway = match level {
             SeverityLevel::Set(Severity::Error) => {
                 format!("    = help: to run it in spite of that, add `--severity {code}=warning`\n")

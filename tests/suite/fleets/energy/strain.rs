@@ -183,6 +183,19 @@ fn faults_of_messages_are_refused_where_robots_rest_on_positions() {
     assert!(printed.contains(&format!("warning[S5024]: {found}")), "{printed}");
 }
 
+/// As in a scenario (S5031).
+#[test]
+fn a_world_that_forgets_all_when_it_crashes_is_warned_of() {
+    let folder = empty_folder("strain-forgets");
+    fs::write(folder.join("hall.composite"), hall("at 1s luggage (3,1) to (3,9)", "")).unwrap();
+    fs::write(folder.join("faults.txt"), "at 1s crash Wor* restart 1s\nat 1min crash World\n").unwrap();
+    let output = saoms_in(&folder, &["run", "hall.composite", "--virtual", "--for", "2s", "--faults", "faults.txt"]);
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    let found = "faults.txt:1:7: `World` has forgotten its robots and its luggage when it starts again";
+    assert!(printed.contains(&format!("warning[S5031]: {found}")), "{printed}");
+    assert!(!printed.contains("faults.txt:2") && output.status.code() != Some(2), "{printed}");
+}
+
 #[test]
 fn a_fault_that_means_nothing_is_refused_at_its_place_before_anything_starts() {
     let folder = empty_folder("strain-refused");
