@@ -180,6 +180,14 @@ impl Battery {
         self.lasts(FULL, period, moving)
     }
 
+    /// Number of executions of a driving robot that discharge the battery as much as so many of one that stands.
+    pub(super) fn standing(&self, executions: u32, period: Duration, moving: u32) -> u32 {
+        let Consumption::Physical { per_second, .. } = self.consumption else { return executions };
+        let needs = during(per_second, period).saturating_mul(u64::from(executions));
+        let driving = self.consumption.driving(period, moving).max(1);
+        u32::try_from(needs.div_ceil(driving)).unwrap_or(u32::MAX)
+    }
+
     fn lasts(&self, level: u64, period: Duration, moving: u32) -> u32 {
         let executions = level.checked_div(self.consumption.driving(period, moving));
         executions.and_then(|executions| u32::try_from(executions).ok()).unwrap_or(u32::MAX)

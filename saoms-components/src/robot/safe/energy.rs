@@ -247,7 +247,7 @@ impl RobotKnowledge {
         // What it is about to do here takes from the reserve, too.
         let stands = self.next == self.block && self.hardware.running().is_none();
         let is_there = stands && self.destination().is_some_and(|to| self.reaches(to, self.block));
-        let handling = if is_there && self.energy.handles_long() { self.energy.pace.handling } else { 0 };
+        let handling = if is_there && self.energy.handles_long() { self.handling_takes() } else { 0 };
         if left >= self.home(self.next).saturating_add(reserve).saturating_add(handling) {
             return true;
         }
@@ -259,7 +259,12 @@ impl RobotKnowledge {
     /// True if the battery lasts for collecting or depositing here, and for the way to the charger.
     pub(super) fn may_handle(&mut self) -> bool {
         let home = self.home(self.next).saturating_add(LEAST_RESERVE);
-        self.executions_left() >= home.saturating_add(self.energy.pace.handling)
+        self.executions_left() >= home.saturating_add(self.handling_takes())
+    }
+
+    /// Number of executions of driving that collecting or depositing takes from the battery.
+    fn handling_takes(&self) -> u32 {
+        self.battery.standing(self.energy.pace.handling, self.period(), self.energy.pace.moving)
     }
 
     /// Compares the battery with a job that starts here and now.

@@ -3,5 +3,7 @@
 mod battery;
 mod charging;
 mod crowded;
+mod handling;
+mod relief;
 mod strain;
 mod sustained;

@@ -58,7 +58,9 @@ impl Substitution {
             self.silent.push(*sleeper);
             self.asked = None;
         }
-        let RobotList { robot: sleeper, battery, .. } = knowledge.best_sleeper(&self.silent)?;
+        // One with less charge would be relieved by this robot in turn, and so on.
+        let is_better = |one: &&RobotList| robot != knowledge.number || one.battery > knowledge.battery.percent();
+        let RobotList { robot: sleeper, battery, .. } = knowledge.best_sleeper(&self.silent).filter(is_better)?;
         Some(SafeCriticalSymptom::Missing { robot, sleeper: *sleeper, battery: *battery })
     }
 
