@@ -301,8 +301,8 @@ fn want(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Position {
 }
 
 impl RobotKnowledge {
-    /// True if the robot handles luggage, cannot move any more, even if its hardware cannot be reached to be told, or may
-    /// not. One that is stopped on the way to a block holds both blocks until its hardware says where it is.
+    /// True if the robot handles luggage, cannot move any more, even if its hardware cannot be reached to be told, or
+    /// may not. One that is stopped on the way to a block holds both blocks until its hardware says where it is.
     pub(super) fn is_bound(&self) -> bool {
         let is_stopped = (self.stopped || self.trouble.is_some()) && !self.hardware.is_moving();
         self.hardware.is_handling() || self.variables.critical || is_stopped

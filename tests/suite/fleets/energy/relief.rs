@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use saoms_testkit::{Fleet, Run};
 
-/// A robot that arrives at its charger with 46 %, one that sleeps with 90 % and does not answer, and one that sleeps with
-/// a battery of this level.
+/// A robot that arrives at its charger with 46 %, one that sleeps with 90 % and does not answer, and one that sleeps
+/// with a battery of this level.
 fn relieved(battery: u32) -> Run {
     let property = |name: &str, value: &str| format!("<property name=\"{name}\">{value}</property>");
     let component = |name: &str, class: &str, more: &str| {
