@@ -62,7 +62,8 @@
         {"name": "robot", "type": "uint32"}, {"name": "incarnation", "type": "uint64"},                     \
         {"name": "heard", "type": "uint64"}, {"name": "block", "type":)                                     \
     BLOCK JSON(}, {"name": "steps", "type":) STEPS JSON(}, {"name": "waits_for", "type": "uint32"},         \
-        {"name": "wanted", "type":) BLOCK JSON(}]})
+        {"name": "wanted", "type":)                                                                         \
+    BLOCK JSON(}, {"name": "aside", "type":) BLOCK JSON(}, {"name": "aside_rank", "type": "uint64"}]})
 
 #define PROGRESS JSON({"enumeration": "uint8", "values": {"RUNNING": 0, "DONE": 1, "FAILED": 2}})
 

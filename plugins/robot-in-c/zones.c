@@ -13,6 +13,8 @@
 
 /* After so many executions without a grant it turns around: something that cannot move may be on its corner. */
 #define PATIENCE_FOR_GRANTS 60
+/* Zones up to this number of blocks away have to know where it wants to go. */
+#define NEAR 4
 
 /* What it goes for. */
 
@@ -231,7 +233,7 @@ static SaomsBytes request(const Patrol *patrol, const Zone *zone, int standing, 
         count += passage->held[at].zone == zone->number;
     }
     /* A zone that is not near has nothing to grant. */
-    if (standing != MAKES_WAY || passage->enters || (count == 0 && !contains(zone, end, 1))) {
+    if (standing != MAKES_WAY || passage->enters || (count == 0 && !contains(zone, end, NEAR))) {
         goal = end;
     }
     saoms_write_u64(message, (uint64_t)zone->number << 32 | patrol->number);

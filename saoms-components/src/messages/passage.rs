@@ -54,6 +54,11 @@ impl Territory {
         inside(block.x, corner.x, width) && inside(block.y, corner.y, height)
     }
 
+    /// True if a robot at this block tells the zone where it is.
+    pub fn is_near(&self, block: Block) -> bool {
+        self.closest(block).distance(block) <= NEAR
+    }
+
     /// The block of the zone that is closest to a block.
     pub fn closest(&self, block: Block) -> Block {
         let Territory { corner, width, height, .. } = *self;
@@ -63,6 +68,9 @@ impl Territory {
         Block::new(within(block.x, corner.x, width), within(block.y, corner.y, height))
     }
 }
+
+/// Distance from a zone within which robots tell it where they are, in blocks.
+const NEAR: u32 = 4;
 
 /// A block of a robot's passage through a zone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Field)]
@@ -201,6 +209,11 @@ pub struct Grant {
     pub waits_for: u32,
     /// The block for which it waits.
     pub wanted: Block,
+    /// Block of another zone for which the robot has to ask, beside the end of its passage, so that another robot gets
+    /// on. If its passage ends there, it has to stay there meanwhile.
+    pub aside: Block,
+    /// Rank with which it asks for that block: that of the robot that gets on; 0 if it need not.
+    pub aside_rank: u64,
 }
 
 /// The number after which none follows: of the last request of a robot, and of the last step that it received.

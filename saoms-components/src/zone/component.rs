@@ -224,8 +224,11 @@ impl Zone {
             !is_due && !told.contains(robot)
         });
         if execution.is_multiple_of(REPEAT) {
-            let unheard = |member: &Member| member.granted > member.request.received && !member.steps.is_empty();
-            told.extend(state.ledger.members().iter().filter(|(_, member)| unheard(member)).map(|(robot, _)| *robot));
+            let is_due = |member: &Member| {
+                let is_unheard = member.granted > member.request.received && !member.steps.is_empty();
+                is_unheard || member.aside.is_some()
+            };
+            told.extend(state.ledger.members().iter().filter(|(_, member)| is_due(member)).map(|(robot, _)| *robot));
         }
         // Before the messages of this execution leave.
         for robot in changed {

@@ -35,16 +35,25 @@ pub(crate) struct Member {
     pub(crate) silent: u32,
     /// The block that it wants next, and the robot that holds it, while it waits for that.
     pub(crate) in_the_way: Option<(Block, u32)>,
+    /// A block of another zone to which it has to make way, and the rank of the robot for which it does.
+    pub(crate) aside: Option<(Block, u64)>,
 }
 
 impl Member {
     pub(crate) fn new(request: GrantRequest, steps: Vec<Step>, granted: u64) -> Member {
-        Member { request, steps, granted, waited: 0, silent: 0, in_the_way: None }
+        Member { request, steps, granted, waited: 0, silent: 0, in_the_way: None, aside: None }
     }
 
-    /// End of the robot's passage: of the steps of this zone, else where the robot says that it is.
+    /// End of the robot's passage: the newest step that the robot has not heard of yet, else where the robot says that
+    /// it is, which may be in another zone.
     pub(crate) fn end(&self) -> Block {
-        self.steps.last().map_or(self.request.end, |step| step.block)
+        let unheard = self.steps.last().filter(|_| self.request.received < self.granted);
+        unheard.map_or(self.request.end, |step| step.block)
+    }
+
+    /// True if it stands on one block, and its passage ends there.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.steps.len() < 2 && self.request.block == self.end()
     }
 
     /// True if others have to drive around it: it cannot move any more, or could go on and says nothing for long.
@@ -158,6 +167,24 @@ impl Ledger {
         self.place(block).map(|place| self.holders[place]).filter(|robot| *robot != 0)
     }
 
+    /// The robots that stand on blocks of other zones close to this one, or go there, with these blocks.
+    pub(crate) fn outside(&self) -> BTreeMap<Block, u32> {
+        let mut outside = BTreeMap::new();
+        for (robot, member) in &self.members {
+            let request = &member.request;
+            if !member.is_over() && request.standing != Standing::Enters {
+                let blocks = [request.block, request.end].into_iter();
+                outside.extend(blocks.filter(|block| self.is_near(*block)).map(|block| (block, *robot)));
+            }
+        }
+        outside
+    }
+
+    /// True if the block is in another zone, and robots there tell this one where they are.
+    pub(crate) fn is_near(&self, block: Block) -> bool {
+        !self.territory.contains(block) && self.territory.is_near(block)
+    }
+
     fn hold(&mut self, block: Block, robot: u32) {
         let Some(place) = self.place(block) else { return };
         match self.holders[place] {
@@ -172,6 +199,12 @@ impl Ledger {
         let stands_there = |(_, member): &(&u32, &Member)| member.steps.iter().any(|step| step.block == block);
         let other = if self.contested { self.members.iter().find(stands_there) } else { None };
         self.holders[place] = other.map_or(0, |(other, _)| *other);
+    }
+
+    /// Forgets which robots have to make way over the edge, and returns that.
+    pub(crate) fn take_asides(&mut self) -> BTreeMap<u32, (Block, u64)> {
+        let members = self.members.iter_mut();
+        members.filter_map(|(robot, member)| Some((*robot, member.aside.take()?))).collect()
     }
 
     /// Takes in a request.
@@ -302,7 +335,7 @@ impl Ledger {
 
     /// The message that tells a robot what is granted to it.
     pub(crate) fn message(&self, robot: u32) -> Option<Grant> {
-        let Member { request, steps, in_the_way, .. } = self.members.get(&robot)?;
+        let Member { request, steps, in_the_way, aside, .. } = self.members.get(&robot)?;
         let Territory { zone, term, .. } = self.territory;
         Some(Grant {
             link: link(zone, robot),
@@ -315,6 +348,8 @@ impl Ledger {
             steps: steps.clone(),
             waits_for: in_the_way.map_or(0, |(_, other)| other),
             wanted: in_the_way.map_or(request.end, |(block, _)| block),
+            aside: aside.map_or(request.end, |(block, _)| block),
+            aside_rank: aside.map_or(0, |(_, rank)| rank),
         })
     }
 }

@@ -8,7 +8,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap, HashMap, VecDeque};
 
 use super::ground::Ground;
-use super::ledger::Ledger;
+use super::ledger::{Ledger, Member};
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::Standing;
 
@@ -16,6 +16,15 @@ use crate::messages::Standing;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Maneuver {
     moves: VecDeque<Move>,
+    /// The robots that move in it.
+    robots: BTreeSet<u32>,
+    /// The robot that gets on, and its rank.
+    robot: u32,
+    rank: u64,
+    /// True if a robot has moved, or may.
+    has_begun: bool,
+    /// Number of rounds for which a move into another zone has been waiting.
+    waited: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,6 +43,9 @@ const CROWD: usize = 7;
 /// Maximum number of states that a search looks at.
 const STATES: usize = 8_000;
 
+/// Number of rounds after which a move that another zone has to grant is given up.
+const OVER_EDGE: u32 = 30;
+
 /// Weight of the way that is left against the number of moves so far: moves are found sooner, with a few more of them.
 const WEIGHT: u32 = 2;
 
@@ -46,13 +58,46 @@ impl Maneuver {
         self.moves.iter().map(|one| (one.robot, one.to))
     }
 
-    /// Grants the moves that are due, and adds the robots to the list. False when it is over, or cannot go on: a robot
-    /// is not where it should be, or does not make way any more.
+    /// The robot that gets on.
+    pub(crate) fn robot(&self) -> u32 {
+        self.robot
+    }
+
+    /// True if a robot has moved, or may.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.has_begun
+    }
+
+    /// Grants the moves that are due, and adds the robots to the list. A robot that has to move into another zone is
+    /// told to ask for that. False when it is over, or cannot go on: a robot is not where it should be, or does not
+    /// make way any more.
     pub(crate) fn go_on(&mut self, ledger: &mut Ledger, granted: &mut BTreeSet<u32>) -> bool {
+        let rank = self.rank;
+        // The zones where they are do not send them elsewhere meanwhile.
+        for robot in &self.robots {
+            let is_outside = |member: &Member| !ledger.territory().contains(member.end());
+            if ledger.member(*robot).is_some_and(is_outside)
+                && let Some(member) = ledger.member_mut(*robot)
+            {
+                member.aside = Some((member.end(), rank));
+            }
+        }
         while let Some(&Move { robot, from, to }) = self.moves.front() {
-            let Some(member) = ledger.member(robot) else { return false };
+            let is_inside = ledger.territory().contains(to);
+            let Some(member) = ledger.member_mut(robot) else { return false };
+            if !is_inside && member.end() == to {
+                self.waited = 0;
+                self.has_begun = true;
+                self.moves.pop_front();
+                continue;
+            }
             if member.end() != from || member.request.standing != Standing::MakesWay {
                 return false;
+            }
+            if !is_inside {
+                member.aside = Some((to, rank));
+                self.waited += 1;
+                return self.waited < OVER_EDGE;
             }
             if !ledger.grant(robot, to) {
                 // Its holder is one of the robots that have to leave first, unless another one came in between.
@@ -60,6 +105,7 @@ impl Maneuver {
                 return holder.is_some_and(|holder| holder.end() != to && !holder.is_obstacle());
             }
             granted.insert(robot);
+            self.has_begun = true;
             self.moves.pop_front();
         }
         false
@@ -67,12 +113,21 @@ impl Maneuver {
 
     /// Looks for moves that bring a robot closer to its goal; `None` if there are none nearby, or robots around it are
     /// still moving.
-    pub(crate) fn find(robot: u32, ledger: &Ledger, ground: &mut Ground, taken: &BTreeSet<Block>) -> Option<Maneuver> {
+    pub(crate) fn find(
+        robot: u32,
+        (ledger, outside): (&Ledger, &BTreeMap<Block, u32>),
+        ground: &mut Ground,
+        taken: &BTreeSet<Block>,
+    ) -> Option<Maneuver> {
         // The fewer robots move, the sooner the moves are found: the others are in the way first.
         let tried = (2..=CROWD).flat_map(|crowd| REGIONS.map(|blocks| (crowd, blocks)));
         let mut found =
-            tried.filter_map(|(crowd, blocks)| Region::around(robot, (crowd, blocks), ledger, ground, taken)?.search());
-        found.next().map(|moves| Maneuver { moves: moves.into() })
+            tried.filter_map(|size| Region::around(robot, size, (ledger, outside), ground, taken)?.search());
+        let rank = ledger.member(robot)?.request.rank;
+        found.next().map(|moves| {
+            let robots = moves.iter().map(|one| one.robot).collect();
+            Maneuver { moves: moves.into(), robots, robot, rank, has_begun: false, waited: 0 }
+        })
     }
 }
 
@@ -92,7 +147,7 @@ impl Region {
     fn around(
         robot: u32,
         (crowd, size): (usize, usize),
-        ledger: &Ledger,
+        (ledger, outside): (&Ledger, &BTreeMap<Block, u32>),
         ground: &mut Ground,
         taken: &BTreeSet<Block>,
     ) -> Option<Region> {
@@ -109,15 +164,15 @@ impl Region {
                 if known.contains_key(&block)
                     || blocks.len() >= size
                     || !ground.is_free(block)
-                    || !ledger.territory().contains(block)
+                    || !(ledger.territory().contains(block) || ledger.is_near(block))
                     || taken.contains(&block)
                 {
                     continue;
                 }
                 let place = u8::try_from(blocks.len()).ok()?;
-                if let Some(holder) = ledger.holder(block) {
+                if let Some(holder) = ledger.holder(block).or_else(|| outside.get(&block).copied()) {
                     let member = ledger.member(holder)?;
-                    if member.steps.len() > 1 {
+                    if !member.is_at_rest() {
                         return None;
                     }
                     if member.request.standing != Standing::MakesWay || robots.len() == crowd {

@@ -117,10 +117,15 @@ impl Passage {
         self.held.last().map_or(Block::default(), |held| held.step.block)
     }
 
-    /// True if the block is in another zone than the end of the passage.
-    pub(crate) fn is_over_edge(&self, block: Block) -> bool {
-        let zone = |block: Block| self.territories.iter().find(|one| one.contains(block)).map(|one| one.zone);
-        zone(block).is_some_and(|there| zone(self.end()).is_some_and(|here| here != there))
+    /// True if the block is in another zone than this one, and the end of the passage or beside it.
+    pub(crate) fn may_ask_for(&self, block: Block, from: u32) -> bool {
+        let there = self.territories.iter().find(|one| one.contains(block));
+        block.distance(self.end()) <= 1 && there.is_some_and(|there| there.zone != from)
+    }
+
+    /// True if the block is in this zone.
+    pub(crate) fn is_of(&self, block: Block, zone: u32) -> bool {
+        self.territories.iter().any(|one| one.zone == zone && one.contains(block))
     }
 
     /// Takes in the territory of a zone.
@@ -159,7 +164,7 @@ impl Passage {
         clear.map(|&Territory { zone, term, .. }| ClearTerm { zone, term }).collect()
     }
 
-    /// Makes links to the zones that the robot holds blocks of, those beside the end of its passage, and that of its
+    /// Makes links to the zones that the robot holds blocks of, those close to the end of its passage, and that of its
     /// charger.
     fn link(&mut self, charger: Block) {
         let end = self.end();
@@ -169,7 +174,7 @@ impl Passage {
         self.linked = Some((end, charger));
         let Passage { held, territories, links, .. } = self;
         for territory in territories.iter() {
-            let is_near = || territory.contains(end) || end.neighbours().iter().any(|block| territory.contains(*block));
+            let is_near = || territory.is_near(end);
             let is_held = || held.iter().any(|held| held.zone == territory.zone);
             let is_linked = || links.iter().any(|link| link.territory.zone == territory.zone);
             if (is_near() || is_held() || territory.contains(charger)) && !is_linked() {
@@ -240,10 +245,11 @@ impl Passage {
             let zone = one.territory.zone;
             let of_zone = held.iter().filter(|held| !enters && held.zone == zone);
             let of_zone: Vec<Step> = of_zone.map(|held| held.step).collect();
-            let is_near = one.territory.contains(end)
-                || goal != end && end.neighbours().into_iter().any(|block| one.territory.contains(block));
             let aside = wish.aside.filter(|(block, _)| one.territory.contains(*block));
-            let is_concerned = is_near || aside.is_some() || !of_zone.is_empty();
+            let is_near = |block: Block, end: Block| one.territory.is_near(block) || one.territory.is_near(end);
+            let is_concerned = is_near(block, end) || !of_zone.is_empty();
+            // It has to hear that the robot is not close any more.
+            let was_concerned = is_near(one.said.block, one.said.end);
             let (goal, rank) = aside.unwrap_or((goal, wish.rank));
             // Each zone has to hear once in its term what each robot holds.
             let is_new = one.said.term != one.territory.term;
@@ -267,7 +273,7 @@ impl Passage {
             };
             let is_unheard = again && one.heard < one.said.number;
             // A zone that the robot has left need not know where it is now; but its answer has to reach the robot.
-            let is_news = if is_concerned || is_new || is_unheard {
+            let is_news = if is_concerned || was_concerned || is_new || is_unheard {
                 // The zone need not hear of another latency by itself.
                 GrantRequest { ahead: one.said.ahead, ..request.clone() } != one.said
             } else {

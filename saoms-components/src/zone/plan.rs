@@ -13,7 +13,7 @@
 //! would queue in it, and none could leave.
 
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::ground::Ground;
 use super::ledger::{Ledger, Member};
@@ -28,6 +28,8 @@ const LINE: u32 = 64;
 pub(crate) struct Round<'z> {
     ledger: &'z mut Ledger,
     ground: &'z mut Ground,
+    /// Robots on blocks of other zones, close to this one.
+    outside: BTreeMap<Block, u32>,
     /// Robots for which this round has decided.
     decided: BTreeSet<u32>,
     /// Robots that still have to move in maneuvers.
@@ -73,10 +75,12 @@ pub(crate) struct Planned {
 /// Plans a round: grants blocks, and notes which robots wait for which.
 pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &mut Ground, ahead: usize) -> Planned {
     let mut granted = BTreeSet::new();
-    maneuvers.retain_mut(|maneuver| maneuver.go_on(ledger, &mut granted));
+    let asides = ledger.take_asides();
     let order = order(ledger, ground);
+    maneuvers.retain_mut(|maneuver| !is_outranked(maneuver, ledger, &order) && maneuver.go_on(ledger, &mut granted));
     let (busy, taken): (BTreeSet<u32>, BTreeSet<Block>) = maneuvers.iter().flat_map(Maneuver::concerns).unzip();
-    let mut round = Round { ledger, ground, decided: busy.clone(), busy, taken, granted, ahead };
+    let outside = ledger.outside();
+    let mut round = Round { ledger, ground, outside, decided: busy.clone(), busy, taken, granted, ahead };
     let mut waiting = round.admit();
     for robot in &order {
         round.serve(*robot);
@@ -88,6 +92,8 @@ pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &
         maneuvers.push(maneuver);
     }
     waiting.extend(order.iter().copied().filter(|robot| round.note_wait(*robot)));
+    let has_changed = |(robot, member): &(&u32, &Member)| member.aside != asides.get(robot).copied();
+    waiting.extend(round.ledger.members().iter().filter(has_changed).map(|(robot, _)| *robot));
     Planned { granted: round.granted, waiting }
 }
 
@@ -123,6 +129,16 @@ fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl
     others.map(|(other, _)| *other)
 }
 
+/// True if no robot has moved yet, and one outside that has to is served before the robot that gets on: its own zone
+/// thinks of it. So two zones do not wait for each other's moves.
+fn is_outranked(maneuver: &Maneuver, ledger: &Ledger, order: &[u32]) -> bool {
+    let place = |robot: u32| order.iter().position(|other| *other == robot);
+    let is_outside = |robot: u32| ledger.member(robot).is_none_or(|member| !ledger.territory().contains(member.end()));
+    let first = place(maneuver.robot());
+    let is_before = |robot: u32| place(robot).is_some_and(|place| first.is_none_or(|first| place < first));
+    !maneuver.has_begun() && maneuver.concerns().any(|(robot, _)| is_outside(robot) && is_before(robot))
+}
+
 impl Round<'_> {
     /// Grants robots the block where they want to enter the floor, if it is free; else its holder is asked to leave.
     /// Returns those that wait for another robot than before.
@@ -135,7 +151,7 @@ impl Round<'_> {
         for (robot, block) in entering {
             let holder = self.ledger.holder(block);
             if let Some(holder) = holder {
-                self.ask(holder, block, block, LINE);
+                self.ask(holder, block, (block, u64::MAX), LINE);
             } else if !self.taken.contains(&block) && self.ledger.grant(robot, block) {
                 self.granted.insert(robot);
             }
@@ -167,33 +183,39 @@ impl Round<'_> {
     fn maneuver(&mut self, order: &[u32]) -> Option<Maneuver> {
         let is_stuck = |robot: &u32| {
             let Some(member) = self.ledger.member(*robot) else { return false };
-            // One that others come out to would push them back.
-            let has_right = self.comes_out(*robot, member.end(), member.request.goal).is_none();
+            // One that others come out to would push them back; of one in another zone that zone thinks.
+            let has_right = self.ledger.territory().contains(member.end())
+                && self.comes_out(*robot, member.end(), member.request.goal).is_none();
             let waited = member.waited;
             waited >= PATIENCE && waited.is_power_of_two() && !self.busy.contains(robot) && has_right
         };
         let stuck: Vec<u32> = order.iter().copied().filter(is_stuck).take(SEARCHES).collect();
-        let mut found =
-            stuck.into_iter().filter_map(|robot| Maneuver::find(robot, self.ledger, self.ground, &self.taken));
-        let mut maneuver = found.next()?;
+        let find = |robot| Maneuver::find(robot, (&*self.ledger, &self.outside), self.ground, &self.taken);
+        let found: Vec<Maneuver> = stuck.into_iter().filter_map(find).collect();
+        let mut maneuver = found.into_iter().find(|maneuver| !is_outranked(maneuver, self.ledger, order))?;
         maneuver.go_on(self.ledger, &mut self.granted).then_some(maneuver)
     }
 
-    /// Extends the passage of a robot. One that makes way for another, on the way to that one's goal, moves anywhere;
-    /// one that goes to its goal moves closer to it.
-    fn advance(&mut self, robot: u32, makes_way: Option<Block>, line: u32) -> Outcome {
+    /// Extends the passage of a robot. One that makes way for another, on the way to that one's goal, moves anywhere,
+    /// with the rank of that one; one that goes to its goal moves closer to it.
+    fn advance(&mut self, robot: u32, makes_way: Option<(Block, u64)>, line: u32) -> Outcome {
         self.decided.insert(robot);
         let Some(member) = self.ledger.member(robot) else { return Outcome::Refused };
         if member.request.standing != Standing::MakesWay || line == 0 {
             return Outcome::Refused;
         }
-        let (end, goal) = (member.end(), member.request.goal);
-        for block in self.candidates(robot, end, goal, makes_way) {
+        let (end, goal, rank) = (member.end(), member.request.goal, member.request.rank);
+        let is_inside = self.ledger.territory().contains(end);
+        for block in self.candidates(robot, end, goal, makes_way.map(|(goal, _)| goal)) {
             if !self.ledger.territory().contains(block) {
-                if makes_way.is_some() {
+                // The zone over there decides.
+                let Some((_, rank)) = makes_way.filter(|_| is_inside) else { return Outcome::Waits };
+                if self.outside.contains_key(&block) {
                     continue;
                 }
-                // The zone over there decides.
+                if let Some(member) = self.ledger.member_mut(robot) {
+                    member.aside = Some((block, rank));
+                }
                 return Outcome::Waits;
             }
             let outcome = match self.ledger.holder(block) {
@@ -201,7 +223,7 @@ impl Round<'_> {
                     self.granted.insert(robot);
                     Outcome::Granted
                 }
-                Some(holder) if holder != robot => self.ask(holder, block, makes_way.unwrap_or(goal), line),
+                Some(holder) if holder != robot => self.ask(holder, block, makes_way.unwrap_or((goal, rank)), line),
                 _ => Outcome::Refused,
             };
             if outcome != Outcome::Refused {
@@ -211,8 +233,8 @@ impl Round<'_> {
         Outcome::Refused
     }
 
-    /// Asks the holder of a block to leave it, to one on its way to a goal.
-    fn ask(&mut self, holder: u32, block: Block, goal: Block, line: u32) -> Outcome {
+    /// Asks the holder of a block to leave it, to one on its way to a goal with a rank.
+    fn ask(&mut self, holder: u32, block: Block, (goal, rank): (Block, u64), line: u32) -> Outcome {
         let Some(member) = self.ledger.member(holder) else { return Outcome::Refused };
         if member.end() != block {
             // It is on its way to the end of its passage, which nobody can take from it.
@@ -221,7 +243,7 @@ impl Round<'_> {
         if self.decided.contains(&holder) {
             return Outcome::Refused;
         }
-        match self.advance(holder, Some(goal), line - 1) {
+        match self.advance(holder, Some((goal, rank)), line - 1) {
             Outcome::Refused => Outcome::Refused,
             Outcome::Granted | Outcome::Waits => Outcome::Waits,
         }
@@ -258,10 +280,13 @@ impl Round<'_> {
             if is_in_vain {
                 continue;
             }
-            let is_held = self.ledger.holder(block).is_some();
+            let is_outside = !self.ledger.territory().contains(block);
+            let is_held = self.ledger.holder(block).is_some() || self.outside.contains_key(&block);
             // One that makes way deeper into a dead end soon comes out again, and asks in its turn.
             let comes_back = makes_way.is_some() && is_deeper;
             let worse = if is_held { MOVE / 2 } else { 0 } + if comes_back { 2 * MOVE } else { 0 };
+            // Over the edge another zone has to agree.
+            let worse = worse + if makes_way.is_some() && is_outside { 2 * MOVE } else { 0 };
             candidates.push((cost.saturating_add(worse), is_held, block));
         }
         candidates.sort_unstable();

@@ -2,11 +2,10 @@
 
 use saoms_api::{Context, Failure, info};
 
-use super::dead_end::way_out;
 use super::leg::Urgency;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
-use crate::messages::{IMMOVABLE, Position, Priority, Standing};
+use crate::messages::{IMMOVABLE, Position, Standing};
 use crate::robot::hardware_client::Reply;
 use crate::robot::{ASSISTANCE, HEARD, RobotKnowledge};
 use crate::zone::{MOST_AHEAD, Wish};
@@ -194,33 +193,12 @@ impl RobotKnowledge {
         asked.or_else(|| self.leg.goal.filter(|_| self.leg.urgency != Urgency::None)).filter(|_| !stays)
     }
 
-    /// A block of another zone to which the robot makes way for one of higher priority, or one that comes out of a dead
-    /// end, and the rank of the more urgent one: its own zone has no free block for it.
+    /// A block of another zone to which a zone lets the robot make way, and the rank with which it does.
     fn aside_over_edge(&mut self) -> Option<(Block, u64)> {
-        if self.standing() != Standing::MakesWay {
-            return None;
-        }
-        let RobotKnowledge { zones: Some(zones), lists, routes, leg, number, next, .. } = self else { return None };
-        let own = leg.priority(*number);
-        // One that waits for this robot does so for those behind it, too.
-        let priority = |robot: u32| {
-            let line = zones.line_behind(robot).into_iter().filter_map(|robot| lists.peers.get(robot));
-            line.map(|peer| peer.priority).filter(|priority| *priority != IMMOVABLE).max()
-        };
-        let askers = zones.askers().filter_map(|robot| Some((lists.peers.get(robot)?, priority(robot)?)));
-        let has_right = |asker: &Position, priority: Priority| {
-            let comes_out = || way_out(asker.next, routes) == Some(*next);
-            asker.priority != IMMOVABLE && asker.next.distance(*next) == 1 && (priority > own || comes_out())
-        };
-        let (asker, priority) =
-            askers.filter(|(asker, priority)| has_right(asker, *priority)).max_by_key(|(_, priority)| *priority)?;
-        let beside = next.neighbours().into_iter().filter(|block| routes.is_free(*block) && *block != asker.next);
-        let (over, inside): (Vec<Block>, Vec<Block>) = beside.partition(|block| zones.is_over_edge(*block));
-        if inside.iter().any(|block| lists.peers.on(*block).is_none()) {
-            return None;
-        }
-        let best = over.into_iter().min_by_key(|block| (lists.peers.on(*block).is_some(), routes.is_charger(*block)));
-        best.map(|block| (block, priority.max(own).rank))
+        let own = self.leg.priority(self.number).rank;
+        let makes_way = self.standing() == Standing::MakesWay;
+        let zones = self.zones.as_ref().filter(|_| makes_way)?;
+        zones.aside().map(|(block, rank)| (block, rank.max(own)))
     }
 
     fn standing(&mut self) -> Standing {

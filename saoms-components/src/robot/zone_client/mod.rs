@@ -76,8 +76,8 @@ pub(crate) struct ZoneClient {
     pub(super) asked: Option<Block>,
     /// The block that another robot has to leave first, and that robot.
     in_the_way: Option<InTheWay>,
-    /// For each robot nearby that waits for another one, by the zone that says so: the block and that robot.
-    waiting: BTreeMap<(u32, u32), InTheWay>,
+    /// For each zone that lets the robot make way to a block of another one: that block, and the rank.
+    asides: BTreeMap<u32, (Block, u64)>,
     latency: Latency,
     hears_around: Option<Block>,
     /// Number of executions in which it waited to enter the floor.
@@ -161,7 +161,7 @@ impl ZoneClient {
             rested: false,
             asked: None,
             in_the_way: None,
-            waiting: BTreeMap::new(),
+            asides: BTreeMap::new(),
             latency: Latency::default(),
             hears_around: None,
             waited: 0,
@@ -249,7 +249,7 @@ impl ZoneClient {
             grants,
             validator,
             in_the_way,
-            waiting,
+            asides,
             latency,
             aimed,
             rested,
@@ -270,18 +270,17 @@ impl ZoneClient {
             }
         }
         for (header, grant) in context.receive(grants).with_headers() {
-            if grant.robot != passage.robot() {
-                let (key, waits) = ((grant.robot, grant.zone), grant.waits_for != 0);
-                if (waits || waiting.contains_key(&key)) && validator.accepts(grant, header, area, context) {
-                    if waits {
-                        waiting.insert(key, InTheWay { block: grant.wanted, robot: grant.waits_for });
-                    } else {
-                        waiting.remove(&key);
-                    }
+            if grant.robot == passage.robot() && validator.accepts(grant, header, area, context) && passage.hear(grant)
+            {
+                match grant.aside_rank {
+                    0 => _ = asides.remove(&grant.zone),
+                    rank => _ = asides.insert(grant.zone, (grant.aside, rank)),
                 }
-            } else if validator.accepts(grant, header, area, context) && passage.hear(grant) {
                 let waits = grant.waits_for != 0;
-                *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
+                // Of a block of another zone this one says nothing.
+                if waits || in_the_way.is_none_or(|wait| passage.is_of(wait.block, grant.zone)) {
+                    *in_the_way = waits.then_some(InTheWay { block: grant.wanted, robot: grant.waits_for });
+                }
                 *unheard = 0;
                 latency.hears(grant.zone, grant.heard);
                 is_late |= !*rested && aimed.iter().any(|one| one.zone == grant.zone && one.number > grant.heard);
@@ -299,8 +298,6 @@ impl ZoneClient {
             return Ok(());
         }
         self.hears_around = Some(block);
-        // It does not hear any more when robots elsewhere get on.
-        self.waiting.retain(|_, wait| wait.block.distance(block) <= HEARING);
         context.set_region(&self.grants, Some(Region::around((block.x, block.y), HEARING + SLACK)))
     }
 
@@ -315,31 +312,11 @@ impl ZoneClient {
         self.in_the_way.filter(|wait| passage.next().is_none() && wait.block.distance(passage.end()) == 1)
     }
 
-    /// The robots that wait until this one leaves its block, if this one can drive no further.
-    pub(crate) fn askers(&self) -> impl Iterator<Item = u32> {
-        let passage = self.passage.as_ref().filter(|_| !self.may_drive());
-        let asks = move |wait: &InTheWay| {
-            passage.is_some_and(|passage| (wait.robot, wait.block) == (passage.robot(), passage.end()))
-        };
-        self.waiting.iter().filter(move |(_, wait)| asks(wait)).map(|((robot, _), _)| *robot)
-    }
-
-    /// A robot, and all that wait for it, or for one that does.
-    pub(crate) fn line_behind(&self, robot: u32) -> Vec<u32> {
-        let mut line = vec![robot];
-        let mut next = 0;
-        while let Some(first) = line.get(next).copied() {
-            next += 1;
-            let behind = self.waiting.iter().filter(|(_, wait)| wait.robot == first).map(|((robot, _), _)| *robot);
-            let behind: Vec<u32> = behind.filter(|robot| !line.contains(robot)).collect();
-            line.extend(behind);
-        }
-        line
-    }
-
-    /// True if the block is in another zone than the end of the passage.
-    pub(crate) fn is_over_edge(&self, block: Block) -> bool {
-        self.passage.as_ref().is_some_and(|passage| passage.is_over_edge(block))
+    /// The block of another zone to which a zone lets the robot make way, and the rank with which it asks for that.
+    pub(crate) fn aside(&self) -> Option<(Block, u64)> {
+        let passage = self.passage.as_ref()?;
+        let may_ask = |(zone, (block, _)): &(&u32, &(Block, u64))| passage.may_ask_for(*block, **zone);
+        self.asides.iter().filter(may_ask).map(|(_, aside)| *aside).max_by_key(|(_, rank)| *rank)
     }
 
     /// True if the robot may drive on.

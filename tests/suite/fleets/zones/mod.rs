@@ -1,6 +1,7 @@
 //! Fleets whose robots enter blocks only with grants of zones.
 
 mod apart;
+mod border;
 mod corridor;
 mod entering;
 mod gone;
