@@ -42,6 +42,15 @@ pub(crate) struct Round<'z> {
     ahead: usize,
 }
 
+/// For whom a robot makes way.
+#[derive(Clone, Copy)]
+struct Asker {
+    /// Where that one wants to go.
+    goal: Block,
+    /// The rank of its way.
+    rank: u64,
+}
+
 /// What comes of a wish to have a block.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Outcome {
@@ -111,19 +120,22 @@ fn order(ledger: &Ledger, ground: &Ground) -> Vec<u32> {
     order.into_iter().map(|(_, _, robot)| robot).collect()
 }
 
-/// The robots that want to leave a dead end through one of its blocks, other than this robot; also those that want to
-/// that block, and are in the way of this one. If the block before it is one of another zone, over which this zone
-/// cannot send a robot away again, also those that are still busy in there.
+/// The robots that come out of a part of a dead end into which this robot wants to go through a block of it, also those
+/// that only want to another part of the same dead end. If the block before it is one of another zone, over which this
+/// zone cannot send a robot away again, also those that are still busy in there.
 fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl Iterator<Item = u32> {
     let dead_ends = ground.dead_ends();
-    let there = ledger.member(robot).map(|member| member.request.goal);
+    let there = ledger.member(robot).map_or(door, |member| member.request.goal);
     let is_edge = dead_ends.out(door).is_some_and(|out| !ledger.territory().contains(out));
     let leaves = move |member: &Member| {
         let (goal, end) = (member.request.goal, member.end());
-        let goes_there = goal == door && there.is_some_and(|there| dead_ends.is_behind(there, end));
-        let goes_out = member.wants_to_go() && (goes_there || !dead_ends.is_behind(goal, door));
+        if !dead_ends.is_behind(end, door) {
+            return false;
+        }
         let is_busy = is_edge && (member.wants_to_go() || member.request.standing == Standing::Stays);
-        (goes_out || is_busy) && dead_ends.is_behind(end, door)
+        // Where the ways of both meet: there they cannot get past each other.
+        let meeting = dead_ends.meeting(end, there).unwrap_or(door);
+        is_busy || member.wants_to_go() && !dead_ends.is_behind(goal, meeting)
     };
     let others = ledger.members().iter().filter(move |(other, member)| **other != robot && leaves(member));
     others.map(|(other, _)| *other)
@@ -151,7 +163,7 @@ impl Round<'_> {
         for (robot, block) in entering {
             let holder = self.ledger.holder(block);
             if let Some(holder) = holder {
-                self.ask(holder, block, (block, u64::MAX), LINE);
+                self.ask(holder, block, Asker { goal: block, rank: u64::MAX }, LINE);
             } else if !self.taken.contains(&block) && self.ledger.grant(robot, block) {
                 self.granted.insert(robot);
             }
@@ -198,18 +210,19 @@ impl Round<'_> {
 
     /// Extends the passage of a robot. One that makes way for another, on the way to that one's goal, moves anywhere,
     /// with the rank of that one; one that goes to its goal moves closer to it.
-    fn advance(&mut self, robot: u32, makes_way: Option<(Block, u64)>, line: u32) -> Outcome {
+    fn advance(&mut self, robot: u32, makes_way: Option<Asker>, line: u32) -> Outcome {
         self.decided.insert(robot);
         let Some(member) = self.ledger.member(robot) else { return Outcome::Refused };
         if member.request.standing != Standing::MakesWay || line == 0 {
             return Outcome::Refused;
         }
-        let (end, goal, rank) = (member.end(), member.request.goal, member.request.rank);
+        let (end, goal) = (member.end(), member.request.goal);
+        let asker = makes_way.unwrap_or(Asker { goal, rank: member.request.rank });
         let is_inside = self.ledger.territory().contains(end);
-        for block in self.candidates(robot, end, goal, makes_way.map(|(goal, _)| goal)) {
+        for block in self.candidates(robot, end, goal, makes_way.map(|asker| asker.goal)) {
             if !self.ledger.territory().contains(block) {
                 // The zone over there decides.
-                let Some((_, rank)) = makes_way.filter(|_| is_inside) else { return Outcome::Waits };
+                let Some(Asker { rank, .. }) = makes_way.filter(|_| is_inside) else { return Outcome::Waits };
                 if self.outside.contains_key(&block) {
                     continue;
                 }
@@ -223,7 +236,7 @@ impl Round<'_> {
                     self.granted.insert(robot);
                     Outcome::Granted
                 }
-                Some(holder) if holder != robot => self.ask(holder, block, makes_way.unwrap_or((goal, rank)), line),
+                Some(holder) if holder != robot => self.ask(holder, block, asker, line),
                 _ => Outcome::Refused,
             };
             if outcome != Outcome::Refused {
@@ -233,17 +246,18 @@ impl Round<'_> {
         Outcome::Refused
     }
 
-    /// Asks the holder of a block to leave it, to one on its way to a goal with a rank.
-    fn ask(&mut self, holder: u32, block: Block, (goal, rank): (Block, u64), line: u32) -> Outcome {
+    /// Asks the holder of a block to leave it to another robot. One that rests there with a higher rank stays.
+    fn ask(&mut self, holder: u32, block: Block, asker: Asker, line: u32) -> Outcome {
         let Some(member) = self.ledger.member(holder) else { return Outcome::Refused };
         if member.end() != block {
             // It is on its way to the end of its passage, which nobody can take from it.
             return Outcome::Waits;
         }
-        if self.decided.contains(&holder) {
+        let stays = !member.wants_to_go() && member.request.rank > asker.rank;
+        if stays || self.decided.contains(&holder) {
             return Outcome::Refused;
         }
-        match self.advance(holder, Some((goal, rank)), line - 1) {
+        match self.advance(holder, Some(asker), line - 1) {
             Outcome::Refused => Outcome::Refused,
             Outcome::Granted | Outcome::Waits => Outcome::Waits,
         }

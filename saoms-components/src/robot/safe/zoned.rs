@@ -2,7 +2,7 @@
 
 use saoms_api::{Context, Failure, info};
 
-use super::leg::Urgency;
+use super::leg::{Leg, Urgency};
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
 use crate::messages::{IMMOVABLE, Position, Standing};
@@ -100,7 +100,7 @@ impl RobotKnowledge {
         let wish = Wish {
             goal: self.goal_in_zones(),
             charger: self.charge_block,
-            rank: self.leg.priority(self.number).rank,
+            rank: self.rank(),
             standing: self.standing(),
             ahead,
             aside,
@@ -199,6 +199,15 @@ impl RobotKnowledge {
         let makes_way = self.standing() == Standing::MakesWay;
         let zones = self.zones.as_ref().filter(|_| makes_way)?;
         zones.aside().map(|(block, rank)| (block, rank.max(own)))
+    }
+
+    /// Rank of its way. One that charges at its charger, and is not well charged yet, has that of the oldest way to a
+    /// charger: if others on their way home, or to their chargers, sent it away, it would come back, and push them away
+    /// in its turn, and nobody would be charged.
+    fn rank(&self) -> u64 {
+        let charges = self.charging && self.is_at_charger() && !self.is_well_charged() && !self.energy.gives_nothing;
+        let leg = if charges && self.leg.urgency == Urgency::None { Leg::OLDEST_TO_CHARGER } else { self.leg };
+        leg.priority(self.number).rank
     }
 
     fn standing(&mut self) -> Standing {

@@ -180,3 +180,34 @@ fn robots_make_way_into_the_zone_that_they_come_from() {
         }
     }
 }
+
+#[test]
+fn robots_on_their_way_home_let_others_charge() {
+    // Each charger is on the way to the other one, and a robot that has charged there was sent away before it was full.
+    let site = Site {
+        map: ".........\n@..@.....\n...@..@..",
+        times: (0, 0),
+        battery: (0.0, 20.0, 100.0),
+        has_zone: true,
+        border: None,
+        assignment: "oldest",
+        robots: &[((3, 0), (3, 0), 100.0), ((4, 0), (4, 0), 100.0)],
+        scenario: "from 500ms every 500ms 33 times luggage random to random",
+    };
+    (0..40).for_each(|seed| assert_served(&site.run(seed), 33, &format!("seed {seed}")));
+}
+
+#[test]
+fn robots_wait_outside_for_one_that_changes_from_one_part_of_a_dead_end_to_another() {
+    let site = Site {
+        map: "....\n@@..\n....\n@.@@\n....",
+        times: (0, 0),
+        battery: (0.0, 0.5, 2.5),
+        has_zone: true,
+        border: None,
+        assignment: "oldest",
+        robots: &[((0, 4), (0, 4), 100.0), ((0, 2), (0, 2), 100.0)],
+        scenario: "from 500ms every 500ms 38 times luggage random to random",
+    };
+    (0..40).for_each(|seed| assert_served(&site.run(seed), 38, &format!("seed {seed}")));
+}
