@@ -30,9 +30,9 @@ pub struct MessageBrokerProperties {
     password_file: Option<String>,
     /// The path of a file with further users, which no other user can read: lines `user:password`.
     users: Option<String>,
-    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, and `controls`
-    /// lets the user ask all programs, and give them orders, with `--url`. Without any, all users may do everything;
-    /// with some, those that are not named may do nothing.
+    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, `runs hall` allows
+    /// what the components of the node `hall` do, and `controls` lets the user ask all programs, and give them orders,
+    /// with `--url`. Without any, all users may do everything; with some, those that are not named may do nothing.
     access: Vec<String>,
     /// The path of a file (PEM) with the certificates of those who vouch for programs: then only programs with such a
     /// certificate are accepted.
@@ -99,23 +99,26 @@ fn access_of(text: &str) -> Result<Access, String> {
         return Err("there is no name of a user before `:`".to_owned());
     }
     for right in rights.split(';').map(str::trim).filter(|right| !right.is_empty()) {
-        let (verb, topics) = right.split_once(char::is_whitespace).unwrap_or((right, ""));
-        if right == "controls" {
-            access.controls = true;
-            continue;
-        }
-        let of = match verb {
-            "reads" => &mut access.reads,
-            "writes" => &mut access.writes,
-            _ => return Err(format!("found `{verb}`, expected `reads` or `writes` and topics, or `controls` alone")),
-        };
+        let (verb, names) = right.split_once(char::is_whitespace).unwrap_or((right, ""));
         let names: Vec<String> =
-            topics.split(',').map(|topic| topic.trim().to_owned()).filter(|topic| !topic.is_empty()).collect();
-        *of = match names.as_slice() {
-            [] => return Err(format!("there is no topic behind `{verb}`")),
-            [all] if all == "*" => Topics::All,
-            _ => Topics::Some(names),
+            names.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect();
+        let topics = || match names.as_slice() {
+            [] => Err(format!("there is no topic behind `{verb}`")),
+            [all] if all == "*" => Ok(Topics::All),
+            _ => Ok(Topics::Some(names.clone())),
         };
+        match verb {
+            "controls" if names.is_empty() => access.controls = true,
+            "reads" => access.reads = topics()?,
+            "writes" => access.writes = topics()?,
+            "runs" if names.is_empty() => return Err("there is no node behind `runs`".to_owned()),
+            "runs" => access.runs.extend(names),
+            _ => {
+                return Err(format!(
+                    "found `{verb}`, expected `reads` or `writes` and topics, `runs` and nodes, or `controls` alone"
+                ));
+            }
+        }
     }
     Ok(access)
 }
@@ -153,12 +156,14 @@ mod tests {
         let viewer = access_of("viewer:").unwrap();
         assert!(viewer.reads == Topics::default() && !viewer.controls);
         assert!(access_of("ada: reads *; controls").unwrap().controls);
+        assert_eq!(access_of("ada: runs hall, gate-a; reads A").unwrap().runs, ["hall", "gate-a"]);
         for (wrong, message) in [
             ("viewer reads A", "no `:`"),
             (": reads A", "no name of a user"),
             ("viewer: sees A", "found `sees`"),
             ("viewer: controls A", "found `controls`"),
             ("viewer: reads", "no topic behind `reads`"),
+            ("viewer: runs", "no node behind `runs`"),
         ] {
             assert!(access_of(wrong).unwrap_err().contains(message), "{wrong}");
         }

@@ -58,6 +58,11 @@ pub struct Access {
     pub reads: Topics,
     /// The topics that they may publish.
     pub writes: Topics,
+    /// The nodes of the fleet that the user's programs run: they may read and publish the topics of the components there,
+    /// and call those of other nodes where these are wired to them.
+    pub runs: Vec<String>,
+    /// True if the user may call components of all programs, and answer their calls.
+    pub calls: bool,
     /// True if the user may control the programs of the network.
     pub controls: bool,
 }
@@ -77,7 +82,24 @@ impl Default for Topics {
     }
 }
 
+impl Access {
+    /// True if the user's programs may call components of others, and answer their calls: they may read and publish
+    /// everything, or run a node that does so.
+    pub fn may_call(&self) -> bool {
+        self.calls || self.reads == Topics::All && self.writes == Topics::All
+    }
+}
+
 impl Topics {
+    /// Adds a topic.
+    pub fn add(&mut self, topic: &str) {
+        if let Topics::Some(names) = self
+            && !names.iter().any(|name| name == topic)
+        {
+            names.push(topic.to_owned());
+        }
+    }
+
     /// Those that are named.
     pub fn names(&self) -> &[String] {
         match self {

@@ -165,9 +165,10 @@ pub fn of_user(access: &Access) -> UserKeys {
     };
     let (mut put, mut subscribe) = (of(&access.writes), of(&access.reads));
     subscribe.push(self::access());
-    // A call can do anything, and an answer says what was done: both are for who may everything.
+    // A call can do anything, and an answer says what was done: both are for who may everything, and for the nodes
+    // whose components call others.
     let calls = [format!("{PREFIX}/call/*"), format!("{PREFIX}/reply/*")];
-    if access.writes == Topics::All && access.reads == Topics::All {
+    if access.may_call() {
         put.extend(calls.clone());
         subscribe.extend(calls);
     }

@@ -28,6 +28,8 @@ pub struct UserRights {
     pub reads: Vec<String>,
     /// The topics that they may publish.
     pub writes: Vec<String>,
+    /// True if the components of the user may call those of other programs, and answer their calls.
+    pub calls: bool,
     /// True if the user may control the programs.
     pub controls: bool,
 }
@@ -43,6 +45,7 @@ impl Granted {
             user: one.user.clone(),
             reads: names(&one.reads),
             writes: names(&one.writes),
+            calls: one.may_call(),
             controls: one.controls,
         };
         Granted { users: access.iter().map(of_user).collect() }
@@ -87,14 +90,13 @@ impl Rights {
     /// A component calls one of another program. Gives what is to be told.
     pub(super) fn call(&mut self, component: &str) -> Option<String> {
         let own = self.known.as_ref()?;
-        let may = |names: &[String]| names.iter().any(|name| name == ALL);
         let what = format!("component `{component}` may not call components of other programs");
-        if may(&own.reads) && may(&own.writes) || !self.told.insert(what.clone()) {
+        if own.calls || !self.told.insert(what.clone()) {
             return None;
         }
         Some(format!(
-            "{what} over the network `{}` as user `{}`: that takes the right to all topics; write `reads *; writes *` \
-             in its `access`",
+            "{what} over the network `{}` as user `{}`: that takes the right to all topics, or to run a node that \
+             calls others; write `reads *; writes *` or `runs` and the node in its `access`",
             self.url, self.user
         ))
     }
@@ -155,7 +157,7 @@ mod tests {
     fn granted(reads: &[&str], writes: &[&str]) -> Granted {
         let topics = |names: &[&str]| Topics::Some(names.iter().map(|name| (*name).to_owned()).collect());
         let (reads, writes) = (topics(reads), topics(writes));
-        Granted::of(&[Access { user: "viewer".to_owned(), reads, writes, controls: false }])
+        Granted::of(&[Access { user: "viewer".to_owned(), reads, writes, ..Access::default() }])
     }
 
     #[test]

@@ -47,11 +47,7 @@ pub fn seen<R>(assembly: &Assembly, site: &str, judge: impl FnOnce(&FleetView<'_
 
 /// The topics of a component that have another name on the bus, and that name.
 fn renamed(spec: &ComponentSpec) -> Vec<(&str, Cow<'_, str>)> {
-    let loops = spec.loops.iter().map(|one| one.class.declaration());
-    let own = spec.class.declaration();
-    let topics = own.publishes.iter().chain(&own.subscribes);
-    let topics = topics.chain(loops.flat_map(|one| one.publishes.iter().chain(&one.subscribes)));
-    let named = topics.map(|topic| (topic.name.as_str(), spec.topic(&topic.name)));
+    let named = spec.publishes().chain(spec.subscribes()).map(|topic| (topic.name.as_str(), spec.topic(&topic.name)));
     let mut renamed: Vec<_> = named.filter(|(declared, on_bus)| declared != on_bus).collect();
     renamed.sort_unstable();
     renamed.dedup();

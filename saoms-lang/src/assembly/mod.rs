@@ -29,7 +29,7 @@ pub use topic_list::TopicList;
 pub use topic_rename::TopicRenames;
 pub use traffic::{Pace, TopicEnd, Traffic, TrafficTopic};
 
-use crate::registry::{RegisteredClass, RegisteredLoop};
+use crate::registry::{ClassTopic, RegisteredClass, RegisteredLoop};
 
 /// The components of a fleet in document order.
 #[derive(Clone, Debug, Default)]
@@ -73,6 +73,18 @@ pub struct ComponentSpec {
 }
 
 impl ComponentSpec {
+    /// The topics that its class and its loops publish, as they declare them.
+    pub fn publishes(&self) -> impl Iterator<Item = &ClassTopic> {
+        let of_loops = self.loops.iter().flat_map(|one| &one.class.declaration().publishes);
+        self.class.declaration().publishes.iter().chain(of_loops)
+    }
+
+    /// The topics that its class and its loops read, as they declare them.
+    pub fn subscribes(&self) -> impl Iterator<Item = &ClassTopic> {
+        let of_loops = self.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
+        self.class.declaration().subscribes.iter().chain(of_loops)
+    }
+
     /// The name on the bus of a topic that the class, or one of its loops, declares under this name: that of
     /// `topicRename`, inside the site. A new name that begins with `/` is outside all sites.
     pub fn topic<'a>(&'a self, declared: &'a str) -> Cow<'a, str> {

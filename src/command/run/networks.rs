@@ -120,7 +120,7 @@ impl Networks {
                     if resolver.faults.is_empty() {
                         resolver.judge(transport, &settings, &described);
                     }
-                    let granted = settings::granted(&described, &settings.users);
+                    let granted = settings::granted(&described, &settings.users, assembly);
                     let membership = Membership {
                         url: url.clone(),
                         user: settings.account.as_ref().map(|account| account.user.clone()),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::certificates::write_private;
 use super::programs::{Given, Program, Programs, Transport, component, on_network};
 
-const BROKER: &str = "unibg.robotics.tca.MessageBrokerImpl";
+pub(super) const BROKER: &str = "unibg.robotics.tca.MessageBrokerImpl";
 /// A broker with these properties; the password of the environment is `sesame`.
 pub(super) fn broker(programs: &Programs, more: Given<'_>) -> Arc<Program> {
     let port = programs.port.to_string();

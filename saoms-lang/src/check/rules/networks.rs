@@ -1,7 +1,7 @@
 //! The networks of a fleet: its brokers, and what its components say of their connections.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use saoms_api::extension::{Router, RouterClass, Topics};
 
@@ -229,6 +229,7 @@ impl<'n, 'a> Networks<'n, 'a> {
         }
         // Topics of components that are on other machines alone are not known here.
         let known = self.topics_of(&router.url);
+        let nodes: BTreeSet<&str> = self.fleet.members.iter().map(|member| &*member.node).collect();
         for (index, access) in router.access.iter().enumerate() {
             let user = quoted(&access.user);
             if router.users.is_none() && Some(&access.user) != router.user.as_ref() {
@@ -237,6 +238,12 @@ impl<'n, 'a> Networks<'n, 'a> {
             }
             if router.access[..index].iter().any(|other| other.user == access.user) {
                 fault(index, format!("the access of {user} is given twice"), "keep one of them");
+            }
+            for node in access.runs.iter().filter(|node| !nodes.contains(&***node)) {
+                let message = format!("no component names node {}, which {user} runs", quoted(node));
+                let meant = nearest(node, nodes.iter().copied().filter(|node| !node.is_empty()));
+                let help = meant.map(|meant| format!("{} is meant", quoted(meant)));
+                fault(index, message, &help.unwrap_or("components name their nodes with `saoms:node`".to_owned()));
             }
             for name in [&access.reads, &access.writes].into_iter().flat_map(Topics::names) {
                 let meant = nearest(name, known.keys().map(|topic| &**topic));

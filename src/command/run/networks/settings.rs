@@ -5,7 +5,7 @@ use std::env;
 use std::path::Path;
 
 use saoms_api::Secret;
-use saoms_api::extension::{Access, Router, RouterClass, TlsPaths};
+use saoms_api::extension::{Access, FailureNotice, Router, RouterClass, TlsPaths};
 use saoms_core::network::key;
 use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport, peers};
 use saoms_lang::assembly::{Assembly, ComponentSpec, RemoteTarget, TaskProperties};
@@ -99,7 +99,7 @@ impl Resolver<'_> {
         let (tls, of) = match &described.router {
             Some((index, router)) => {
                 settings.users = self.users(*index, router);
-                settings.access = granted(described, &settings.users).iter().map(key::of_user).collect();
+                settings.access = granted(described, &settings.users, self.assembly).iter().map(key::of_user).collect();
                 (&router.tls, [*index; 3])
             }
             None => {
@@ -252,11 +252,32 @@ impl Resolver<'_> {
 }
 
 /// What a router lets each of its users do; nothing where all may do everything. Who is not named may do nothing.
-pub(super) fn granted(described: &Described, users: &[Account]) -> Vec<Access> {
+pub(super) fn granted(described: &Described, users: &[Account], assembly: &Assembly) -> Vec<Access> {
     let Some((_, router)) = described.router.as_ref().filter(|(_, router)| !router.access.is_empty()) else {
         return Vec::new();
     };
     let named = |user: &str| router.access.iter().find(|access| access.user == user).cloned();
     let of = |one: &Account| named(&one.user).unwrap_or_else(|| Access { user: one.user.clone(), ..Access::default() });
-    users.iter().map(of).collect()
+    let mut all: Vec<Access> = users.iter().map(of).collect();
+    all.iter_mut().for_each(|access| allow_nodes(access, assembly));
+    all
+}
+
+/// Lets a user do what the components of the nodes do that it runs.
+fn allow_nodes(access: &mut Access, assembly: &Assembly) {
+    let runs = |spec: &&ComponentSpec| access.runs.iter().any(|node| spec.node == **node);
+    let (own, others): (Vec<&ComponentSpec>, Vec<&ComponentSpec>) = assembly.all().partition(runs);
+    let calls = |spec: &&ComponentSpec| spec.references.iter().any(|wire| !wire.elsewhere.is_empty());
+    let is_called = |spec: &&ComponentSpec| {
+        let mut ends = spec.references.iter().flat_map(|wire| &wire.elsewhere);
+        ends.any(|end| own.iter().any(|one| one.path == end.component))
+    };
+    access.calls |= own.iter().any(calls) || others.iter().any(is_called);
+    for spec in own {
+        spec.publishes().for_each(|topic| access.writes.add(&spec.topic(&topic.name)));
+        spec.subscribes().for_each(|topic| access.reads.add(&spec.topic(&topic.name)));
+        // The program speaks for a component that failed.
+        let is_about = |notice: &&FailureNotice| spec.publishes().any(|topic| topic.name == notice.about.name);
+        FailureNotice::linked().filter(is_about).for_each(|notice| access.writes.add(&spec.topic(&notice.topic.name)));
+    }
 }
