@@ -27,6 +27,12 @@ const REPEAT_WAITING: u32 = 2;
 /// A zone that does not come back in that time is taken for dead.
 const CUT_OFF: Range<u32> = 20..6000;
 
+/// Number of executions after which a robot forgets that a zone lets it make way, if the zone does not say so again: it
+/// may have missed that this is over. Zones repeat it every four executions of theirs; where they answer late, the
+/// robot waits longer, by this number of answers.
+const ASIDE_LASTS: u32 = 16;
+const ANSWERS: u32 = 4;
+
 /// Number of executions after which a robot says that it cannot enter the floor.
 const LONG: u32 = 50;
 
@@ -76,8 +82,8 @@ pub(crate) struct ZoneClient {
     pub(super) asked: Option<Block>,
     /// The block that another robot has to leave first, and that robot.
     in_the_way: Option<InTheWay>,
-    /// For each zone that lets the robot make way to a block of another one: that block, and the rank.
-    asides: BTreeMap<u32, (Block, u64)>,
+    /// For each zone that lets the robot make way to a block of another one, what it said last.
+    asides: BTreeMap<u32, Aside>,
     latency: Latency,
     hears_around: Option<Block>,
     /// Number of executions in which it waited to enter the floor.
@@ -113,6 +119,16 @@ struct Aimed {
 pub(crate) struct InTheWay {
     pub(super) block: Block,
     pub(super) robot: u32,
+}
+
+/// A block of another zone to which a zone lets the robot make way.
+#[derive(Clone, Copy, Debug)]
+struct Aside {
+    block: Block,
+    /// The rank with which the robot asks for it.
+    rank: u64,
+    /// Number of executions since the zone said so.
+    age: u32,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -261,6 +277,11 @@ impl ZoneClient {
             return false;
         };
         latency.begin_execution();
+        let lasts = ASIDE_LASTS + ANSWERS * latency.executions();
+        asides.retain(|_, aside| {
+            aside.age += 1;
+            aside.age <= lasts
+        });
         let mut is_late = false;
         for (header, territory) in context.receive(territories).with_headers() {
             if validator.accepts(territory, header, area, context) {
@@ -274,7 +295,7 @@ impl ZoneClient {
             {
                 match grant.aside_rank {
                     0 => _ = asides.remove(&grant.zone),
-                    rank => _ = asides.insert(grant.zone, (grant.aside, rank)),
+                    rank => _ = asides.insert(grant.zone, Aside { block: grant.aside, rank, age: 0 }),
                 }
                 let waits = grant.waits_for != 0;
                 // Of a block of another zone this one says nothing.
@@ -315,8 +336,9 @@ impl ZoneClient {
     /// The block of another zone to which a zone lets the robot make way, and the rank with which it asks for that.
     pub(crate) fn aside(&self) -> Option<(Block, u64)> {
         let passage = self.passage.as_ref()?;
-        let may_ask = |(zone, (block, _)): &(&u32, &(Block, u64))| passage.may_ask_for(*block, **zone);
-        self.asides.iter().filter(may_ask).map(|(_, aside)| *aside).max_by_key(|(_, rank)| *rank)
+        let may_ask = |(zone, aside): &(&u32, &Aside)| passage.may_ask_for(aside.block, **zone);
+        let best = self.asides.iter().filter(may_ask).max_by_key(|(_, aside)| aside.rank)?.1;
+        Some((best.block, best.rank))
     }
 
     /// True if the robot may drive on.
