@@ -5,6 +5,7 @@ use saoms_api::{
     Subscription, Time, record, warn,
 };
 
+use super::asides::Asides;
 use super::deadlock::StandingStill;
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger, Member};
@@ -55,6 +56,7 @@ pub struct Zone {
     /// Robots that the alerts about deadlocks are about.
     deadlocked: BTreeSet<u32>,
     standing_still: StandingStill,
+    asides: Asides,
     /// Robots with an unconfirmed request, and the execution in which that is confirmed at the latest.
     unconfirmed: BTreeMap<u32, u64>,
     #[subscribes(GRANT_REQUEST)]
@@ -105,6 +107,7 @@ impl Component for Zone {
             open: false,
             deadlocked: BTreeSet::new(),
             standing_still: StandingStill::default(),
+            asides: Asides::default(),
             unconfirmed: BTreeMap::new(),
             requests: Subscription::default(),
             presences: Subscription::default(),
@@ -211,7 +214,7 @@ impl Zone {
             // It begins a new record once all have answered.
             return Ok(());
         }
-        let Planned { granted, waiting: mut told } = self.plan(state);
+        let Planned { granted, mut told } = self.plan(state);
         changed.extend(&granted);
         told.extend(granted);
         self.name_deadlocks(state, context);
@@ -223,11 +226,10 @@ impl Zone {
             }
             !is_due && !told.contains(robot)
         });
+        let asides = self.asides.note(&state.ledger, &state.maneuvers, execution);
         if execution.is_multiple_of(REPEAT) {
-            let is_due = |member: &Member| {
-                let is_unheard = member.granted > member.request.received && !member.steps.is_empty();
-                is_unheard || member.aside.is_some()
-            };
+            told.extend(asides);
+            let is_due = |member: &Member| member.granted > member.request.received && !member.steps.is_empty();
             told.extend(state.ledger.members().iter().filter(|(_, member)| is_due(member)).map(|(robot, _)| *robot));
         }
         // Before the messages of this execution leave.
@@ -288,7 +290,7 @@ impl Zone {
                 if !self.open {
                     self.heard.insert(header.sender);
                 }
-                if ledger.hear_clear(presence.robot, presence.incarnation) {
+                if ledger.hear_clear(presence.robot, presence.incarnation, (presence.block, presence.end)) {
                     changed.insert(presence.robot);
                 }
             }
@@ -387,7 +389,8 @@ impl Zone {
         if !waits && self.deadlocked.is_empty() && self.standing_still.is_empty() {
             return;
         }
-        let found = self.standing_still.count(&state.ledger);
+        let moving = state.maneuvers.iter().flat_map(Maneuver::robots).collect();
+        let found = self.standing_still.count(&state.ledger, &moving);
         self.deadlocked.retain(|robot| {
             let lasts = found.iter().any(|deadlock| deadlock.first() == *robot);
             if !lasts {

@@ -41,11 +41,15 @@ impl DeadEnds {
         self.outs.contains_key(&door) && ways.any(|block| block == door)
     }
 
-    /// The first block of a dead end on the way out of it, behind which another block is, too.
-    pub(super) fn meeting(&self, from: Block, other: Block) -> Option<Block> {
-        let ways = |from: Block| std::iter::successors(Some(from), |block| self.out(*block));
-        let of_other: Vec<Block> = ways(other).filter(|block| self.outs.contains_key(block)).collect();
-        ways(from).find(|block| of_other.contains(block))
+    /// The blocks of dead ends on the way out from a block, with that one.
+    pub(super) fn way_out(&self, from: Block) -> Vec<Block> {
+        let way = std::iter::successors(Some(from), |block| self.out(*block));
+        way.filter(|block| self.outs.contains_key(block)).collect()
+    }
+
+    /// The first block on the way out from a block that is also on another way out.
+    pub(super) fn meeting(&self, from: Block, other: &[Block]) -> Option<Block> {
+        std::iter::successors(Some(from), |block| self.out(*block)).find(|block| other.contains(block))
     }
 
     /// The block of a dead end that a robot enters on its way to a goal, from where it is or from beside the mouth.
@@ -92,8 +96,9 @@ mod tests {
         let [end, bay, door, hall] = [(4, 0), (0, 3), (0, 2), (3, 3)].map(|(x, y)| Block::new(x, y));
         assert!(dead_ends.is_behind(end, door) && dead_ends.is_behind(door, door));
         assert!(!dead_ends.is_behind(hall, door) && !dead_ends.is_behind(end, bay) && !dead_ends.is_behind(end, hall));
-        assert_eq!([dead_ends.meeting(end, bay), dead_ends.meeting(hall, bay)], [Some(door), None]);
-        assert_eq!(dead_ends.meeting(end, Block::new(1, 0)), Some(Block::new(1, 0)));
+        let meeting = |from: Block, other: Block| dead_ends.meeting(from, &dead_ends.way_out(other));
+        assert_eq!([meeting(end, bay), meeting(hall, bay)], [Some(door), None]);
+        assert_eq!(meeting(end, Block::new(1, 0)), Some(Block::new(1, 0)));
         assert_eq!(dead_ends.door(Block::new(1, 2), end), Some(door));
         assert_eq!(dead_ends.door(door, bay), Some(bay));
         assert_eq!(dead_ends.door(bay, end), None, "it goes out first");

@@ -1,6 +1,6 @@
 //! Robots that stand in each other's way for good.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::ledger::{Ledger, Member};
@@ -9,7 +9,8 @@ use crate::messages::Standing;
 
 /// Number of rounds for which robots have not moved before they count as a deadlock.
 ///
-/// Maneuvers are looked for after 4, 8, 16 and 32 rounds: by then there is none.
+/// Maneuvers are looked for after 4, 8, 16 and 32 rounds without a move. By then there is none, or what came of it has
+/// changed nothing. Rounds in which a robot is in one do not count: it may wait long for its move over an edge.
 const STANDING_STILL: u32 = 40;
 
 /// The robots of a zone that stand still and want to go on.
@@ -25,18 +26,19 @@ struct Standstill {
 }
 
 impl StandingStill {
-    /// Counts a round. Gives the deadlocks of the zone, each once.
-    pub(super) fn count(&mut self, ledger: &Ledger) -> Vec<Deadlock> {
+    /// Counts a round, in which these robots are in a maneuver. Gives the deadlocks of the zone, each once.
+    pub(super) fn count(&mut self, ledger: &Ledger, moving: &BTreeSet<u32>) -> Vec<Deadlock> {
         let stands = |robot: &u32| ledger.member(*robot).filter(|member| is_at_rest(member) && member.wants_to_go());
         self.0.retain(|robot, still| stands(robot).is_some_and(|member| member.granted == still.granted));
-        let waiting = ledger.members().iter().filter(|(robot, member)| stands(robot).is_some() && member.waited > 0);
+        let waits = |robot: &u32, member: &Member| member.waited > 0 && !moving.contains(robot);
+        let waiting = ledger.members().iter().filter(|(robot, member)| stands(robot).is_some() && waits(robot, member));
         for (robot, member) in waiting {
             let still = self.0.entry(*robot).or_insert(Standstill { granted: member.granted, rounds: 0 });
             still.rounds = still.rounds.saturating_add(1);
         }
         let mut found: Vec<Deadlock> = Vec::new();
         let stuck = self.0.keys().filter(|robot| self.is_stuck(**robot));
-        for deadlock in stuck.filter_map(|robot| self.deadlock_of(*robot, ledger)) {
+        for deadlock in stuck.filter_map(|robot| self.deadlock_of(*robot, ledger, moving)) {
             if found.iter().all(|one| one.first() != deadlock.first()) {
                 found.push(deadlock);
             }
@@ -53,10 +55,11 @@ impl StandingStill {
         self.0.get(&robot).is_some_and(|still| still.rounds >= STANDING_STILL)
     }
 
-    /// The deadlock that a robot is in, or waits for; `None` if a robot in its way can still go on, or has to stay for
-    /// now.
-    fn deadlock_of(&self, robot: u32, ledger: &Ledger) -> Option<Deadlock> {
+    /// The deadlock that a robot is in, or waits for; `None` if a robot in its way can still go on, is in a maneuver,
+    /// or has to stay for now, as one that charges: it rests with a rank above those of all that wait for it.
+    fn deadlock_of(&self, robot: u32, ledger: &Ledger, moving: &BTreeSet<u32>) -> Option<Deadlock> {
         let mut chain: Vec<(u32, Block)> = Vec::new();
+        let mut highest = 0;
         let mut next = robot;
         loop {
             let member = ledger.member(next)?;
@@ -64,11 +67,15 @@ impl StandingStill {
                 chain.drain(..start);
                 break;
             }
-            let is_last = is_at_rest(member) && !member.wants_to_go();
+            let rests = is_at_rest(member) && !member.wants_to_go();
+            if moving.contains(&next) || rests && member.request.rank > highest {
+                return None;
+            }
             chain.push((next, member.end()));
-            if is_last {
+            if rests {
                 break;
             }
+            highest = highest.max(member.request.rank);
             if !self.is_stuck(next) {
                 return None;
             }

@@ -29,7 +29,7 @@ pub(crate) struct Member {
     pub(crate) steps: Vec<Step>,
     /// Number of the last step that was granted.
     pub(crate) granted: u64,
-    /// Number of rounds of planning in which it wanted to go on, and its passage did not grow.
+    /// Number of rounds of planning in which it wanted to go on from a block of the zone, and its passage did not grow.
     pub(crate) waited: u32,
     /// Number of rounds of planning in which it did not say anything new, although it could go on.
     pub(crate) silent: u32,
@@ -134,8 +134,12 @@ impl Ledger {
     pub(crate) fn stop(&mut self, robot: u32, at: Option<Block>) {
         let Some(member) = self.members.get_mut(&robot) else { return };
         member.request.standing = Standing::Lost;
-        let is_its = |at: &Block| member.steps.iter().any(|step| step.block == *at) || !self.territory.contains(*at);
+        let steps = &member.steps;
+        let is_its = |at: &Block| steps.iter().any(|step| step.block == *at) || !self.territory.contains(*at);
         let Some(at) = at.filter(is_its) else { return };
+        // It stands there, and its passage ends there.
+        let request = &mut member.request;
+        (request.block, request.end, request.goal) = (at, at, at);
         let (kept, freed): (Vec<Step>, Vec<Step>) = member.steps.iter().partition(|step| step.block == at);
         member.steps = kept;
         for step in &freed {
@@ -201,6 +205,13 @@ impl Ledger {
         self.holders[place] = other.map_or(0, |(other, _)| *other);
     }
 
+    /// Forgets for how long robots waited that do not want to go anywhere from a block of the territory.
+    pub(crate) fn forget_waits(&mut self) {
+        let Ledger { territory, members, .. } = self;
+        let waits = |member: &Member| member.wants_to_go() && territory.contains(member.end());
+        members.values_mut().filter(|member| !waits(member)).for_each(|member| member.waited = 0);
+    }
+
     /// Forgets which robots have to make way over the edge, and returns that.
     pub(crate) fn take_asides(&mut self) -> BTreeMap<u32, (Block, u64)> {
         let members = self.members.iter_mut();
@@ -251,9 +262,10 @@ impl Ledger {
         conflict.unwrap_or(Heard::News)
     }
 
-    /// Takes in that this incarnation of a robot held nothing in this term when it began, or later. What it held in
-    /// earlier ones is free. False if the zone has heard of this incarnation before.
-    pub(crate) fn hear_clear(&mut self, robot: u32, incarnation: u64) -> bool {
+    /// Takes in that this incarnation of a robot held nothing in this term when it began, or later, and where it and
+    /// the end of its passage were then. What it held in earlier ones is free. False if the zone has heard of this
+    /// incarnation before.
+    pub(crate) fn hear_clear(&mut self, robot: u32, incarnation: u64, (block, end): (Block, Block)) -> bool {
         let Some(known) = self.members.get(&robot).filter(|known| known.request.incarnation < incarnation) else {
             return false;
         };
@@ -261,9 +273,12 @@ impl Ledger {
         let request = GrantRequest {
             incarnation,
             number: 0,
+            at: self.territory.closest(block),
+            block,
+            end,
             received: 0,
             held: Vec::new(),
-            goal: known.request.end,
+            goal: end,
             rank: 0,
             standing: Standing::MakesWay,
             ahead: 0,
@@ -349,7 +364,8 @@ impl Ledger {
             waits_for: in_the_way.map_or(0, |(_, other)| other),
             wanted: in_the_way.map_or(request.end, |(block, _)| block),
             aside: aside.map_or(request.end, |(block, _)| block),
-            aside_rank: aside.map_or(0, |(_, rank)| rank),
+            // The lowest rank is 0, which says there that it need not.
+            aside_rank: aside.map_or(0, |(_, rank)| rank.max(1)),
         })
     }
 }

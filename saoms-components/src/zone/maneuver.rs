@@ -58,6 +58,11 @@ impl Maneuver {
         self.moves.iter().map(|one| (one.robot, one.to))
     }
 
+    /// The robots that take part, also those that have made all of their moves.
+    pub(crate) fn robots(&self) -> impl Iterator<Item = u32> {
+        self.robots.iter().copied()
+    }
+
     /// The robot that gets on.
     pub(crate) fn robot(&self) -> u32 {
         self.robot
@@ -172,6 +177,9 @@ impl Region {
                 let place = u8::try_from(blocks.len()).ok()?;
                 if let Some(holder) = ledger.holder(block).or_else(|| outside.get(&block).copied()) {
                     let member = ledger.member(holder)?;
+                    if member.is_obstacle() {
+                        continue;
+                    }
                     if !member.is_at_rest() {
                         return None;
                     }

@@ -3,6 +3,7 @@
 //! `docs/zones.md` describes the protocol, and why it is safe. `Ledger` is a zone's part of it, `Passage` a robot's;
 //! both are state machines without clock and chance. `plan` decides which robot is granted which block.
 
+mod asides;
 mod component;
 mod dead_ends;
 mod deadlock;
@@ -16,6 +17,8 @@ mod properties;
 
 #[cfg(test)]
 mod explore_tests;
+#[cfg(test)]
+mod plan_tests;
 
 pub use component::Zone;
 pub use properties::ZoneProperties;

@@ -42,10 +42,10 @@ pub(crate) struct Round<'z> {
     ahead: usize,
 }
 
-/// For whom a robot makes way.
+/// Robot for which another one makes way.
 #[derive(Clone, Copy)]
 struct Asker {
-    /// Where that one wants to go.
+    /// Where it wants to go.
     goal: Block,
     /// The rank of its way.
     rank: u64,
@@ -77,20 +77,22 @@ const SEARCHES: usize = 2;
 pub(crate) struct Planned {
     /// Robots to which something was granted.
     pub(crate) granted: BTreeSet<u32>,
-    /// Robots that wait for another robot than before, or for none any more.
-    pub(crate) waiting: BTreeSet<u32>,
+    /// Robots to which the zone has something else to tell: they wait for another robot than before or for none any
+    /// more, or have to make way over the edge to another block than before or to none any more.
+    pub(crate) told: BTreeSet<u32>,
 }
 
 /// Plans a round: grants blocks, and notes which robots wait for which.
 pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &mut Ground, ahead: usize) -> Planned {
     let mut granted = BTreeSet::new();
+    ledger.forget_waits();
     let asides = ledger.take_asides();
     let order = order(ledger, ground);
     maneuvers.retain_mut(|maneuver| !is_outranked(maneuver, ledger, &order) && maneuver.go_on(ledger, &mut granted));
     let (busy, taken): (BTreeSet<u32>, BTreeSet<Block>) = maneuvers.iter().flat_map(Maneuver::concerns).unzip();
     let outside = ledger.outside();
     let mut round = Round { ledger, ground, outside, decided: busy.clone(), busy, taken, granted, ahead };
-    let mut waiting = round.admit();
+    let mut told = round.admit();
     for robot in &order {
         round.serve(*robot);
     }
@@ -100,10 +102,10 @@ pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &
     if let Some(maneuver) = round.maneuver(&order) {
         maneuvers.push(maneuver);
     }
-    waiting.extend(order.iter().copied().filter(|robot| round.note_wait(*robot)));
+    told.extend(order.iter().copied().filter(|robot| round.note_wait(*robot)));
     let has_changed = |(robot, member): &(&u32, &Member)| member.aside != asides.get(robot).copied();
-    waiting.extend(round.ledger.members().iter().filter(has_changed).map(|(robot, _)| *robot));
-    Planned { granted: round.granted, waiting }
+    told.extend(round.ledger.members().iter().filter(has_changed).map(|(robot, _)| *robot));
+    Planned { granted: round.granted, told }
 }
 
 /// The robots that want to go somewhere, in the order in which they are served: by their ranks, and first of all those
@@ -126,6 +128,7 @@ fn order(ledger: &Ledger, ground: &Ground) -> Vec<u32> {
 fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl Iterator<Item = u32> {
     let dead_ends = ground.dead_ends();
     let there = ledger.member(robot).map_or(door, |member| member.request.goal);
+    let way_out = dead_ends.way_out(there);
     let is_edge = dead_ends.out(door).is_some_and(|out| !ledger.territory().contains(out));
     let leaves = move |member: &Member| {
         let (goal, end) = (member.request.goal, member.end());
@@ -134,7 +137,7 @@ fn coming_out(ledger: &Ledger, ground: &Ground, door: Block, robot: u32) -> impl
         }
         let is_busy = is_edge && (member.wants_to_go() || member.request.standing == Standing::Stays);
         // Where the ways of both meet: there they cannot get past each other.
-        let meeting = dead_ends.meeting(end, there).unwrap_or(door);
+        let meeting = dead_ends.meeting(end, &way_out).unwrap_or(door);
         is_busy || member.wants_to_go() && !dead_ends.is_behind(goal, meeting)
     };
     let others = ledger.members().iter().filter(move |(other, member)| **other != robot && leaves(member));
@@ -177,6 +180,11 @@ impl Round<'_> {
         waiting
     }
 
+    /// True if the passage of a robot ends in this zone.
+    fn is_inside(&self, robot: u32) -> bool {
+        self.ledger.member(robot).is_some_and(|member| self.ledger.territory().contains(member.end()))
+    }
+
     /// Grants a robot its next block, unless it still has one ahead.
     fn serve(&mut self, robot: u32) {
         let Some(member) = self.ledger.member(robot) else { return };
@@ -184,7 +192,9 @@ impl Round<'_> {
             return;
         }
         let outcome = self.advance(robot, None, LINE);
+        // How long a robot of another zone waits, that zone counts.
         if outcome != Outcome::Granted
+            && self.is_inside(robot)
             && let Some(member) = self.ledger.member_mut(robot)
         {
             member.waited = member.waited.saturating_add(1);
@@ -196,15 +206,15 @@ impl Round<'_> {
         let is_stuck = |robot: &u32| {
             let Some(member) = self.ledger.member(*robot) else { return false };
             // One that others come out to would push them back; of one in another zone that zone thinks.
-            let has_right = self.ledger.territory().contains(member.end())
-                && self.comes_out(*robot, member.end(), member.request.goal).is_none();
+            let has_right =
+                self.is_inside(*robot) && self.comes_out(*robot, member.end(), member.request.goal).is_none();
             let waited = member.waited;
             waited >= PATIENCE && waited.is_power_of_two() && !self.busy.contains(robot) && has_right
         };
         let stuck: Vec<u32> = order.iter().copied().filter(is_stuck).take(SEARCHES).collect();
         let find = |robot| Maneuver::find(robot, (&*self.ledger, &self.outside), self.ground, &self.taken);
-        let found: Vec<Maneuver> = stuck.into_iter().filter_map(find).collect();
-        let mut maneuver = found.into_iter().find(|maneuver| !is_outranked(maneuver, self.ledger, order))?;
+        let may_begin = |maneuver: &Maneuver| !is_outranked(maneuver, self.ledger, order);
+        let mut maneuver = stuck.into_iter().filter_map(find).find(may_begin)?;
         maneuver.go_on(self.ledger, &mut self.granted).then_some(maneuver)
     }
 
@@ -312,7 +322,7 @@ impl Round<'_> {
         let Some(member) = self.ledger.member(robot) else { return false };
         let (end, goal) = (member.end(), member.request.goal);
         // A robot that can still drive does not wait.
-        let waits = member.waited > 0 && member.steps.len() < 2;
+        let waits = (member.waited > 0 || !self.is_inside(robot)) && member.steps.len() < 2;
         let best = if waits { self.candidates(robot, end, goal, None).into_iter().next() } else { None };
         let in_the_way = match best {
             Some(block) => self.ledger.holder(block).map(|holder| (block, holder)),

@@ -101,8 +101,9 @@ enum Message {
     Territory(u32, Territory),
     Request(GrantRequest),
     Grant(Grant),
-    /// What an incarnation of a robot says to all zones, as one of them hears it.
-    Clear(u32, u64, ClearTerm),
+    /// What an incarnation of a robot says to all zones, with its block and the end of its passage, as one of them
+    /// hears it.
+    Clear(u32, u64, ClearTerm, (Block, Block)),
     /// To a zone: this robot is gone, which was this incarnation of it then.
     Gone(usize, u32, u64),
 }
@@ -114,7 +115,7 @@ impl Message {
             Message::Territory(_, territory) => (territory.term, 0),
             Message::Request(request) => (request.incarnation, request.number),
             Message::Grant(grant) => (grant.heard, grant.steps.last().map_or(0, |step| step.number)),
-            Message::Clear(_, incarnation, clear) => (clear.term, *incarnation),
+            Message::Clear(_, incarnation, clear, _) => (clear.term, *incarnation),
             Message::Gone(..) => (0, 0),
         }
     }
@@ -160,7 +161,7 @@ impl Scenario {
                     zone.ledger.hear(&request);
                     zone.unheard.remove(&request.robot);
                 }
-                Message::Clear(robot, _, clear) => _ = state.zones[clear.zone as usize - 1].unheard.remove(&robot),
+                Message::Clear(robot, _, clear, _) => _ = state.zones[clear.zone as usize - 1].unheard.remove(&robot),
                 Message::Territory(..) | Message::Grant(_) | Message::Gone(..) => {}
             }
         }
@@ -229,7 +230,7 @@ impl State {
             (Message::Territory(one, a), Message::Territory(other, b)) => one == other && a.zone == b.zone,
             (Message::Request(one), Message::Request(other)) => one.link == other.link,
             (Message::Grant(one), Message::Grant(other)) => one.link == other.link,
-            (Message::Clear(one, _, a), Message::Clear(other, _, b)) => one == other && a.zone == b.zone,
+            (Message::Clear(one, _, a, _), Message::Clear(other, _, b, _)) => one == other && a.zone == b.zone,
             _ => false,
         };
         let earlier = self.network.iter().filter(|other| same(other)).min_by_key(|other| other.age()).cloned();
@@ -255,7 +256,8 @@ impl State {
         self.request(robot, false);
         let passage = &self.robots[robot].passage;
         let (number, incarnation, clear) = (passage.robot(), passage.incarnation(), passage.clear());
-        clear.into_iter().for_each(|clear| self.send(Message::Clear(number, incarnation, clear)));
+        let place = (passage.held()[0].step.block, passage.end());
+        clear.into_iter().for_each(|clear| self.send(Message::Clear(number, incarnation, clear, place)));
     }
 
     fn request(&mut self, robot: usize, again: bool) {
@@ -331,10 +333,10 @@ impl State {
                     self.plan(zone, false, ground, rules);
                 }
             }
-            Message::Clear(robot, incarnation, clear) => {
+            Message::Clear(robot, incarnation, clear, place) => {
                 let zone = clear.zone as usize - 1;
                 let is_of_term = clear.term == self.zones[zone].ledger.territory().term;
-                let is_news = is_of_term && self.zones[zone].ledger.hear_clear(*robot, *incarnation);
+                let is_news = is_of_term && self.zones[zone].ledger.hear_clear(*robot, *incarnation, *place);
                 if is_of_term && self.zones[zone].unheard.remove(robot) || is_news {
                     self.plan(zone, false, ground, rules);
                 }

@@ -30,7 +30,7 @@ impl State {
                     let known = known.iter().find(|known| known.zone == territory.zone);
                     (robot, territory.zone, known.is_some_and(|known| known.term >= territory.term))
                 }
-                Message::Clear(robot, incarnation, clear) => {
+                Message::Clear(robot, incarnation, clear, _) => {
                     let member = zones[clear.zone as usize - 1].ledger.member(*robot);
                     let is_known = member.is_none_or(|member| member.request.incarnation >= *incarnation);
                     (robot, clear.zone, is_known || clear.term < zones[clear.zone as usize - 1].ledger.territory().term)
