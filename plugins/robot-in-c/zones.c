@@ -3,6 +3,9 @@
  *
  * It holds the block where it is, and enters another one only with a grant. It tells each zone what it holds of it, and
  * repeats that until the zone confirms it; what it does not name there is released for ever.
+ *
+ * It does not follow `aside`: at the edge of a zone it makes way for nobody over the edge, and turns around when it has
+ * waited for long. Robots that wait for it there get on later, and just as safely.
  */
 
 #include "patrol.h"

@@ -134,8 +134,8 @@ pub struct GrantRequest {
 
 /// Where a robot is, and of which zones it holds nothing.
 ///
-/// It answers all zones that ask where the robot is, but for those of which it holds blocks or to which it drives:
-/// these get a request.
+/// It answers all zones that ask where the robot is. Zones of which it holds blocks, those within 4 blocks of it or of
+/// the end of its passage, and that of its charger also get a request.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
 #[message(
     key = "robot",
