@@ -13,7 +13,7 @@ use crate::robot::Policy;
 
 /// Number of periods of the slowest robot for which a robot that took no job is not asked again. It doubles each time,
 /// as often as [`DOUBLED`], and beyond that while there is no news of the robot, so that a run ends in which nothing
-/// changes any more.
+/// changes any more. News cut the rest to what it is after [`DOUBLED`] times.
 const REST: u32 = 8;
 const DOUBLED: u32 = 6;
 const MOST_DOUBLED: u32 = 20;
@@ -47,6 +47,8 @@ pub struct Member {
     pub until: Time,
     /// Number of the luggage that it is told to hand back, until it does.
     pub withdrawn: Option<u32>,
+    /// Time until which it is not asked again where there is news of it.
+    until_with_news: Time,
     period: u64,
     moved: Time,
     /// When it said last that it took luggage, or that it has done with it.
@@ -103,7 +105,7 @@ impl Member {
         self.period
     }
 
-    /// Notes that the robot is heard, and whether there is news of it. True if it may be asked again because of that.
+    /// Notes that the robot is heard, and whether there is news of it. True if it may be asked earlier because of that.
     fn hear(&mut self, is_news: bool) -> bool {
         let (is_back, may_take) = (self.silent > DOUBLED, is_news && self.handed_back > DOUBLED);
         if self.asked.is_some() || !(is_back || may_take) {
@@ -113,8 +115,9 @@ impl Member {
         if may_take {
             self.handed_back = DOUBLED;
         }
-        self.until = Time::START;
-        true
+        let is_earlier = self.until_with_news < self.until;
+        self.until = self.until.min(self.until_with_news);
+        is_earlier
     }
 }
 
@@ -253,6 +256,7 @@ impl Crew {
                     (member.job, member.until, member.engaged) = (None, now, false);
                 } else if member.asked == luggage && said.stage == LuggageStage::Release {
                     member.until = now + rest.saturating_mul(1 << member.handed_back);
+                    member.until_with_news = now + rest.saturating_mul(1 << member.handed_back.min(DOUBLED));
                     member.handed_back = (member.handed_back + 1).min(MOST_DOUBLED);
                 }
                 member.asked.take_if(|asked| Some(*asked) == luggage);
@@ -412,8 +416,9 @@ impl Crew {
             if let Some(member) = self.members.get_mut(&robot).filter(is_late)
                 && let Some(luggage) = member.asked.take()
             {
-                let rest = rest.saturating_mul(1 << member.silent.saturating_sub(DOUBLED));
-                (member.until, member.late, member.late_at) = (now + rest, Some(luggage), member.asked_at);
+                member.until = now + rest.saturating_mul(1 << member.silent.saturating_sub(DOUBLED));
+                member.until_with_news = now + rest;
+                (member.late, member.late_at) = (Some(luggage), member.asked_at);
                 member.silent = (member.silent + 1).min(MOST_DOUBLED);
                 silent.push((robot, luggage));
                 self.sort(robot);

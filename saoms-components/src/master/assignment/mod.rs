@@ -5,6 +5,8 @@
 //! answered, luggage also when that takes too long: the world lets one robot collect it.
 
 mod crew;
+#[cfg(test)]
+mod crew_tests;
 mod knowledge;
 #[cfg(test)]
 mod lease_tests;
