@@ -141,7 +141,7 @@ pub(crate) struct RunArguments {
     pub(crate) state: Option<PathBuf>,
 
     /// Hold the run to the invariants of its components, as `saoms simulate` does: violations are reported, and the
-    /// exit code is 1 then
+    /// exit code is 1 then. In virtual time, a standstill ends the run before `--for`
     #[arg(long)]
     pub(crate) invariants: bool,
 
@@ -462,6 +462,8 @@ fn settings(arguments: &RunArguments) -> Settings {
         timer_slack: arguments.timer_slack,
         realtime: arguments.realtime,
         grace: arguments.grace,
+        // As in a simulation: what has not happened by then never does, however short `--for` is.
+        ends_at_standstill: arguments.invariants,
         ..Settings::default()
     }
 }

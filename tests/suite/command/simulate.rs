@@ -112,7 +112,7 @@ fn robots_with_a_full_battery_leave_a_charger_to_others_however_late_zones_answe
     assert!(told.contains("24 of 24"), "{told}");
 }
 
-/// Without a robot nobody brings the luggage; `saoms run --virtual` ends there, too, where it has no `--for`.
+/// Without a robot nobody brings the luggage. The command that shows a seed again ends there, too.
 #[test]
 fn a_standstill_ends_a_run_and_is_named() {
     let folder = empty_folder("simulate-standstill");
@@ -131,6 +131,12 @@ fn a_standstill_ends_a_run_and_is_named() {
     ] {
         assert!(told.contains(row), "{row}: {told}");
     }
+    let line = told.lines().find_map(|line| line.strip_prefix("  saoms run ")).unwrap();
+    assert_eq!(line, "hall.composite --virtual --invariants --seed 0 --for 300s");
+    let again = saoms_in(&folder, &std::iter::once("run").chain(line.split(' ')).collect::<Vec<_>>());
+    let seen = String::from_utf8_lossy(&again.stderr).into_owned() + &stdout(&again);
+    assert_eq!(again.status.code(), Some(1), "{seen}");
+    assert!(seen.contains("7 requests are finished once faults are over") && seen.contains(stands), "{seen}");
     // A fault that begins later may start something.
     fs::write(folder.join("faults.txt"), "at 2min crash World restart 1s\n").unwrap();
     let arguments = ["--seeds", "1", "--faults", "faults.txt", "--report", "json"];
