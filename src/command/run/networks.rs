@@ -296,8 +296,7 @@ fn on<'s>(specs: &'s [ComponentSpec], url: &str) -> impl Iterator<Item = &'s Com
 fn readers(assembly: &Assembly, url: &str) -> BTreeMap<String, Vec<String>> {
     let mut readers: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for spec in on(&assembly.components, url) {
-        let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
-        for topic in spec.class.declaration().subscribes.iter().chain(of_loops) {
+        for topic in spec.subscribes() {
             let known = readers.entry(spec.topic(&topic.name).into_owned()).or_default();
             if known.last() != Some(&spec.path) {
                 known.push(spec.path.clone());

@@ -37,8 +37,7 @@ fn is_named(spec: &ComponentSpec, call: &FaultCall, site: &str) -> bool {
 
 /// A component as observers of a fault hear of it.
 fn concerned(spec: &ComponentSpec) -> ConcernedComponent {
-    let loops = spec.loops.iter().flat_map(|one| &one.class.declaration().publishes);
-    let publishes = spec.class.declaration().publishes.iter().chain(loops).map(|declared| ConcernedTopic {
+    let publishes = spec.publishes().map(|declared| ConcernedTopic {
         name: spec.topic(&declared.name).into_owned(),
         message: declared.message.clone(),
     });

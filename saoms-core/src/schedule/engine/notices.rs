@@ -2,7 +2,6 @@
 
 use saoms_api::Time;
 use saoms_api::extension::{FailureNotice, Outage};
-use saoms_lang::assembly::ComponentSpec;
 
 use super::{Engine, RunPhase};
 use crate::bus::TopicId;
@@ -21,7 +20,7 @@ impl Engine {
         let outage = Outage { number, since: Time::from_nanos(now), restarts };
         for notice in FailureNotice::linked() {
             let slot = &self.slots[index as usize];
-            let topics = if publishes(&slot.spec, notice.about.name) {
+            let topics = if slot.spec.publishes().any(|topic| topic.name == notice.about.name) {
                 self.topics_of_readers(notice.topic.name, &slot.spec.site)
             } else {
                 Vec::new()
@@ -43,9 +42,7 @@ impl Engine {
     fn topics_of_readers(&self, declared: &str, site: &str) -> Vec<TopicId> {
         let mut topics: Vec<TopicId> = Vec::new();
         for (_, spec) in self.members_everywhere().filter(|(_, spec)| spec.site == site) {
-            let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
-            let mut all = spec.class.declaration().subscribes.iter().chain(of_loops);
-            if !all.any(|topic| topic.name == declared) {
+            if !spec.subscribes().any(|topic| topic.name == declared) {
                 continue;
             }
             if let Some(topic) = self.bus.find(&spec.topic(declared)).filter(|topic| !topics.contains(topic)) {
@@ -54,10 +51,4 @@ impl Engine {
         }
         topics
     }
-}
-
-/// True if the component publishes on the topic that is declared by this name.
-fn publishes(spec: &ComponentSpec, declared: &str) -> bool {
-    let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().publishes);
-    spec.class.declaration().publishes.iter().chain(of_loops).any(|topic| topic.name == declared)
 }

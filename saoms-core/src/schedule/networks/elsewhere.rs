@@ -143,9 +143,8 @@ impl Engine {
                 continue;
             }
             let own = spec.class.declaration();
-            let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().subscribes);
             let is_noticed = |topic: &&ClassTopic| FailureNotice::linked().any(|one| one.topic.name == topic.name);
-            let noticed = own.subscribes.iter().chain(of_loops).filter(is_noticed);
+            let noticed = spec.subscribes().filter(is_noticed);
             for declared in own.taken().map(|(_, topic)| topic).chain(noticed) {
                 let name = spec.topic(&declared.name);
                 let schema = declared.schema.to_string();

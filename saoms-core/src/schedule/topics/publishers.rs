@@ -18,8 +18,7 @@ impl DeclaredPublishers {
     fn of(members: impl Iterator<Item = (u32, Arc<ComponentSpec>)>) -> DeclaredPublishers {
         let mut topics: HashMap<String, Vec<u32>> = HashMap::new();
         for (number, spec) in members {
-            let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().publishes);
-            for declared in spec.class.declaration().publishes.iter().chain(of_loops) {
+            for declared in spec.publishes() {
                 let publishers = topics.entry(spec.topic(&declared.name).into_owned()).or_default();
                 if publishers.last() != Some(&number) {
                     publishers.push(number);

@@ -51,10 +51,8 @@ impl Speakers {
     pub(in crate::schedule) fn of(specs: impl Iterator<Item = Arc<ComponentSpec>>) -> Speakers {
         let mut topics: HashMap<String, SpokenTopic> = HashMap::new();
         for spec in specs {
-            let class = spec.class.declaration();
-            let Some(number) = class.speaker(&spec.values) else { continue };
-            let of_loops = spec.loops.iter().flat_map(|one| &one.class.declaration().publishes);
-            for declared in class.publishes.iter().chain(of_loops).filter(|topic| !topic.speakers.is_empty()) {
+            let Some(number) = spec.class.declaration().speaker(&spec.values) else { continue };
+            for declared in spec.publishes().filter(|topic| !topic.speakers.is_empty()) {
                 let topic = topics.entry(spec.topic(&declared.name).into_owned()).or_default();
                 for field in &declared.speakers {
                     if !topic.fields.contains(field) {
