@@ -198,23 +198,24 @@ impl RunInvariants for FleetInvariants {
 
     fn end(&mut self, at: Time, end: RunEnd, counts: &Counts<'_>) {
         if end == RunEnd::Standstill {
-            self.tide.turns_no_more();
+            self.tide.note_standstill();
         }
         self.look(at);
         let is_cut_off = end == RunEnd::CutOff;
-        let (mut delivered, mut told, mut requested, mut waits) = (0, 0, 0, Vec::new());
+        let (mut delivered, mut reported, mut requested, mut waits) = (0, 0, 0, Vec::new());
         for (site, Site { robots, pieces, has_world, has_stopped }) in &mut self.sites {
             let mut finder = Finder { site, at, found: &mut self.found };
             pieces.end(is_cut_off, &self.tide.at_site(*has_stopped), robots.longest_period(), &mut finder);
             delivered += pieces.delivered();
             // A world of another program counts there.
-            told += if *has_world { pieces.delivered() } else { 0 };
+            reported += if *has_world { pieces.delivered() } else { 0 };
             requested += pieces.requested();
             waits.extend(pieces.waits());
         }
         let counted = usize::try_from(counts("luggage.delivered")).unwrap_or_default();
-        if told > counted {
-            let text = format!("robots said of {told} pieces that they were delivered, the world counted {counted}");
+        if reported > counted {
+            let text =
+                format!("robots said of {reported} pieces that they were delivered, the world counted {counted}");
             Finder { site: "", at, found: &mut self.found }.note(ONCE, text);
         }
         // What no master heard of is not delivered either. One that forgot what it knew may count a piece twice.

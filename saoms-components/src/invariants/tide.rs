@@ -51,7 +51,7 @@ impl Tide {
     }
 
     /// Notes that nothing can happen any more.
-    pub(super) fn turns_no_more(&mut self) {
+    pub(super) fn note_standstill(&mut self) {
         self.stands_still = true;
     }
 

@@ -181,7 +181,7 @@ impl Battery {
     }
 
     /// Number of executions of a driving robot that discharge the battery as much as so many of one that stands.
-    pub(super) fn standing(&self, executions: u32, period: Duration, moving: u32) -> u32 {
+    pub(super) fn as_driving(&self, executions: u32, period: Duration, moving: u32) -> u32 {
         let Consumption::Physical { per_second, .. } = self.consumption else { return executions };
         let needs = during(per_second, period).saturating_mul(u64::from(executions));
         let driving = self.consumption.driving(period, moving).max(1);

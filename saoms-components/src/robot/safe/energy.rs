@@ -264,7 +264,7 @@ impl RobotKnowledge {
 
     /// Number of executions of driving that collecting or depositing takes from the battery.
     fn handling_takes(&self) -> u32 {
-        self.battery.standing(self.energy.pace.handling, self.period(), self.energy.pace.moving)
+        self.battery.as_driving(self.energy.pace.handling, self.period(), self.energy.pace.moving)
     }
 
     /// Compares the battery with a job that starts here and now.
