@@ -102,7 +102,11 @@ impl Maneuver {
             if !is_inside {
                 member.aside = Some((to, rank));
                 self.waited += 1;
-                return self.waited < OVER_EDGE;
+                // One that takes no part came in between.
+                let is_taken = |(other, member): (&u32, &Member)| {
+                    !self.robots.contains(other) && [member.request.block, member.end()].contains(&to)
+                };
+                return self.waited < OVER_EDGE && !ledger.members().iter().any(is_taken);
             }
             if !ledger.grant(robot, to) {
                 // Its holder is one of the robots that have to leave first, unless another one came in between.
@@ -129,10 +133,11 @@ impl Maneuver {
         let mut found =
             tried.filter_map(|size| Region::around(robot, size, (ledger, outside), ground, taken)?.search());
         let rank = ledger.member(robot)?.request.rank;
-        found.next().map(|moves| {
-            let robots = moves.iter().map(|one| one.robot).collect();
-            Maneuver { moves: moves.into(), robots, robot, rank, has_begun: false, waited: 0 }
-        })
+        let moves = found.next()?;
+        let robots: BTreeSet<u32> = moves.iter().map(|one| one.robot).collect();
+        // Where nobody has to make way, the robot can drive by itself.
+        let others_move = robots.iter().any(|other| *other != robot);
+        others_move.then(|| Maneuver { moves: moves.into(), robots, robot, rank, has_begun: false, waited: 0 })
     }
 }
 
