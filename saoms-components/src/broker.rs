@@ -30,9 +30,10 @@ pub struct MessageBrokerProperties {
     password_file: Option<String>,
     /// The path of a file with further users, which no other user can read: lines `user:password`.
     users: Option<String>,
-    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, `runs hall` allows
-    /// what the components of the node `hall` do, and `controls` lets the user ask all programs, and give them orders,
-    /// with `--url`. Without any, all users may do everything; with some, those that are not named may do nothing.
+    /// What a user may do, as `viewer: reads POSTOPIC; writes RMSTOPIC; controls`; `*` is all topics, `runs hall`
+    /// allows what the components of the node `hall` do, and `controls` lets the user ask all programs, and give them
+    /// orders, with `--url`. Without any, all users may do everything; with some, those that are not named may do
+    /// nothing.
     access: Vec<String>,
     /// The path of a file (PEM) with the certificates of those who vouch for programs: then only programs with such a
     /// certificate are accepted.
@@ -109,8 +110,8 @@ fn access_of(text: &str) -> Result<Access, String> {
         };
         match verb {
             "controls" if names.is_empty() => access.controls = true,
-            "reads" => access.reads = topics()?,
-            "writes" => access.writes = topics()?,
+            "reads" => access.reads.extend(topics()?),
+            "writes" => access.writes.extend(topics()?),
             "runs" if names.is_empty() => return Err("there is no node behind `runs`".to_owned()),
             "runs" => access.runs.extend(names),
             _ => {
@@ -156,7 +157,11 @@ mod tests {
         let viewer = access_of("viewer:").unwrap();
         assert!(viewer.reads == Topics::default() && !viewer.controls);
         assert!(access_of("ada: reads *; controls").unwrap().controls);
-        assert_eq!(access_of("ada: runs hall, gate-a; reads A").unwrap().runs, ["hall", "gate-a"]);
+        let access = access_of("ada: runs hall, gate-a; reads A; reads B").unwrap();
+        assert_eq!(
+            (access.runs, access.reads.names()),
+            (vec!["hall".into(), "gate-a".into()], &["A".into(), "B".into()][..])
+        );
         for (wrong, message) in [
             ("viewer reads A", "no `:`"),
             (": reads A", "no name of a user"),

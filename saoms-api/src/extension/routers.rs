@@ -58,10 +58,11 @@ pub struct Access {
     pub reads: Topics,
     /// The topics that they may publish.
     pub writes: Topics,
-    /// The nodes of the fleet that the user's programs run: they may read and publish the topics of the components there,
-    /// and call those of other nodes where these are wired to them.
+    /// The nodes of the fleet that the user's programs run: they may read and publish the topics of the components
+    /// there, and call those of other nodes where these are wired to them.
     pub runs: Vec<String>,
-    /// True if the user may call components of all programs, and answer their calls.
+    /// True if the components of these nodes call others, or are called. A router class leaves it at `false`: it
+    /// follows from `runs` and the composite.
     pub calls: bool,
     /// True if the user may control the programs of the network.
     pub controls: bool,
@@ -91,6 +92,14 @@ impl Access {
 }
 
 impl Topics {
+    /// Adds other topics.
+    pub fn extend(&mut self, others: Topics) {
+        match others {
+            Topics::All => *self = Topics::All,
+            Topics::Some(names) => names.iter().for_each(|name| self.add(name)),
+        }
+    }
+
     /// Adds a topic.
     pub fn add(&mut self, topic: &str) {
         if let Topics::Some(names) = self

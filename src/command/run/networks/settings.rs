@@ -259,25 +259,46 @@ pub(super) fn granted(described: &Described, users: &[Account], assembly: &Assem
     let named = |user: &str| router.access.iter().find(|access| access.user == user).cloned();
     let of = |one: &Account| named(&one.user).unwrap_or_else(|| Access { user: one.user.clone(), ..Access::default() });
     let mut all: Vec<Access> = users.iter().map(of).collect();
-    all.iter_mut().for_each(|access| allow_nodes(access, assembly));
+    all.iter_mut().for_each(|access| allow_nodes(access, assembly, &router.url));
     all
 }
 
-/// Lets a user do what the components of the nodes do that it runs.
-fn allow_nodes(access: &mut Access, assembly: &Assembly) {
-    let runs = |spec: &&ComponentSpec| access.runs.iter().any(|node| spec.node == **node);
-    let (own, others): (Vec<&ComponentSpec>, Vec<&ComponentSpec>) = assembly.all().partition(runs);
-    let calls = |spec: &&ComponentSpec| spec.references.iter().any(|wire| !wire.elsewhere.is_empty());
-    let is_called = |spec: &&ComponentSpec| {
-        let mut ends = spec.references.iter().flat_map(|wire| &wire.elsewhere);
-        ends.any(|end| own.iter().any(|one| one.path == end.component))
-    };
-    access.calls |= own.iter().any(calls) || others.iter().any(is_called);
-    for spec in own {
+/// Lets a user do what the components of the nodes that it runs do on the network of a router.
+fn allow_nodes(access: &mut Access, assembly: &Assembly, router: &str) {
+    let runs: BTreeSet<&str> = access.runs.iter().map(String::as_str).collect();
+    let on_network = || assembly.all().filter(|spec| spec.url().is_some_and(|url| leads_to(url, router)));
+    let calls = on_network().flat_map(|spec| {
+        let ends = spec.references.iter().flat_map(|wire| &wire.elsewhere);
+        ends.flat_map(|end| [spec.node.as_str(), end.node.as_str()])
+    });
+    access.calls |= calls.into_iter().any(|node| runs.contains(node));
+    for spec in on_network().filter(|spec| runs.contains(spec.node.as_str())) {
         spec.publishes().for_each(|topic| access.writes.add(&spec.topic(&topic.name)));
         spec.subscribes().for_each(|topic| access.reads.add(&spec.topic(&topic.name)));
         // The program speaks for a component that failed.
         let is_about = |notice: &&FailureNotice| spec.publishes().any(|topic| topic.name == notice.about.name);
         FailureNotice::linked().filter(is_about).for_each(|notice| access.writes.add(&spec.topic(&notice.topic.name)));
+    }
+}
+
+/// True if a url leads to a router: it is the address of the router, or has its port where the router listens at all
+/// addresses of its machine.
+fn leads_to(url: &str, router: &str) -> bool {
+    let ends = |url: &str| {
+        let address = url.rsplit_once("://").map_or(url, |(_, address)| address);
+        address.rsplit_once(':').map(|(host, port)| (host.to_owned(), port.to_owned()))
+    };
+    let (Some((_, port)), Some((host, own_port))) = (ends(url), ends(router)) else { return url == router };
+    url == router || ["0.0.0.0", "[::]"].contains(&&*host) && port == own_port
+}
+
+#[cfg(test)]
+mod tests {
+    use super::leads_to;
+
+    #[test]
+    fn urls_lead_to_the_router_at_their_address() {
+        assert!(leads_to("gate:61616", "gate:61616") && leads_to("tls://gate:61616", "tls://0.0.0.0:61616"));
+        assert!(!leads_to("gate:61616", "gate:61617") && !leads_to("gate:61616", "hall:61616"));
     }
 }
