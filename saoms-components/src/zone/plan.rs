@@ -229,11 +229,17 @@ impl Round<'_> {
         let (end, goal) = (member.end(), member.request.goal);
         let asker = makes_way.unwrap_or(Asker { goal, rank: member.request.rank });
         let is_inside = self.ledger.territory().contains(end);
+        let mut held_outside = None;
         for block in self.candidates(robot, end, goal, makes_way.map(|asker| asker.goal)) {
             if !self.ledger.territory().contains(block) {
                 // The zone over there decides.
                 let Some(Asker { rank, .. }) = makes_way.filter(|_| is_inside) else { return Outcome::Waits };
-                if self.outside.contains_key(&block) {
+                if let Some(holder) = self.outside.get(&block).copied() {
+                    // Its zone lets it make way, if it goes behind the one for which this robot does.
+                    let member = self.ledger.member(holder).filter(|_| !self.decided.contains(&holder));
+                    if member.is_some_and(|member| member.request.rank < rank) {
+                        held_outside.get_or_insert((block, rank));
+                    }
                     continue;
                 }
                 if let Some(member) = self.ledger.member_mut(robot) {
@@ -253,7 +259,13 @@ impl Round<'_> {
                 return outcome;
             }
         }
-        Outcome::Refused
+        match self.ledger.member_mut(robot).filter(|_| held_outside.is_some()) {
+            Some(member) => {
+                member.aside = held_outside;
+                Outcome::Waits
+            }
+            None => Outcome::Refused,
+        }
     }
 
     /// Asks the holder of a block to leave it to another robot. One that rests there with a higher rank stays.
