@@ -38,6 +38,10 @@ pub(crate) struct Round<'z> {
     taken: BTreeSet<Block>,
     /// Robots to which something was granted.
     granted: BTreeSet<u32>,
+    /// True if a robot that makes way in this line has to do so over the edge.
+    leads_over_edge: bool,
+    /// Robots for which another one has to make way over the edge.
+    waits_over_edge: BTreeSet<u32>,
     /// Number of blocks that are granted ahead of a robot.
     ahead: usize,
 }
@@ -66,6 +70,10 @@ enum Outcome {
 /// looked for again after twice as many rounds.
 const PATIENCE: u32 = 4;
 
+/// The same where another robot was told to make way over the edge: until the zone over there has heard of that, and
+/// its robots have made room, a maneuver would take back what they do.
+const PATIENCE_OVER_EDGE: u32 = 16;
+
 /// Maximum number of blocks that are granted ahead of a robot.
 pub(crate) const MOST_AHEAD: u32 = 16;
 
@@ -91,7 +99,18 @@ pub(crate) fn plan(ledger: &mut Ledger, maneuvers: &mut Vec<Maneuver>, ground: &
     maneuvers.retain_mut(|maneuver| !is_outranked(maneuver, ledger, &order) && maneuver.go_on(ledger, &mut granted));
     let (busy, taken): (BTreeSet<u32>, BTreeSet<Block>) = maneuvers.iter().flat_map(Maneuver::concerns).unzip();
     let outside = ledger.outside();
-    let mut round = Round { ledger, ground, outside, decided: busy.clone(), busy, taken, granted, ahead };
+    let mut round = Round {
+        ledger,
+        ground,
+        outside,
+        decided: busy.clone(),
+        busy,
+        taken,
+        granted,
+        leads_over_edge: false,
+        waits_over_edge: BTreeSet::new(),
+        ahead,
+    };
     let mut told = round.admit();
     for robot in &order {
         round.serve(*robot);
@@ -192,6 +211,9 @@ impl Round<'_> {
             return;
         }
         let outcome = self.advance(robot, None, LINE);
+        if std::mem::take(&mut self.leads_over_edge) {
+            self.waits_over_edge.insert(robot);
+        }
         // How long a robot of another zone waits, that zone counts.
         if outcome != Outcome::Granted
             && self.is_inside(robot)
@@ -209,7 +231,8 @@ impl Round<'_> {
             let has_right =
                 self.is_inside(*robot) && self.comes_out(*robot, member.end(), member.request.goal).is_none();
             let waited = member.waited;
-            waited >= PATIENCE && waited.is_power_of_two() && !self.busy.contains(robot) && has_right
+            let patience = if self.waits_over_edge.contains(robot) { PATIENCE_OVER_EDGE } else { PATIENCE };
+            waited >= patience && waited.is_power_of_two() && !self.busy.contains(robot) && has_right
         };
         let stuck: Vec<u32> = order.iter().copied().filter(is_stuck).take(SEARCHES).collect();
         let find = |robot| Maneuver::find(robot, (&*self.ledger, &self.outside), self.ground, &self.taken);
@@ -244,6 +267,7 @@ impl Round<'_> {
                 }
                 if let Some(member) = self.ledger.member_mut(robot) {
                     member.aside = Some((block, rank));
+                    self.leads_over_edge = true;
                 }
                 return Outcome::Waits;
             }
@@ -262,6 +286,7 @@ impl Round<'_> {
         match self.ledger.member_mut(robot).filter(|_| held_outside.is_some()) {
             Some(member) => {
                 member.aside = held_outside;
+                self.leads_over_edge = true;
                 Outcome::Waits
             }
             None => Outcome::Refused,
