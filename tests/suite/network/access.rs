@@ -84,12 +84,15 @@ fn a_user_may_do_what_the_components_of_its_node_do() {
     let broker = start_as(&programs, "broker", "client", "one");
     programs.until(&broker, "listens at");
     // Another machine than the one whose node it runs.
-    let wrong = start_as(&programs, "client", "viewer", "three");
+    let (server, wrong) =
+        (start_as(&programs, "server", "server", "two"), start_as(&programs, "client", "viewer", "three"));
     let refused = "may not call components of other programs over the network";
     for said in ["component `Sender` may not publish on topic `NUMBERS`", refused] {
         programs.until(&wrong, said);
     }
     programs.stop(&wrong);
+    programs.stop(&server);
+    assert!(!server.printed().contains("has received"), "{}", programs.printed());
     let server = start_as(&programs, "server", "server", "two");
     let client = start_as(&programs, "client", "client", "one");
     programs.until(&client, "made 50 calls, 50 were answered");
