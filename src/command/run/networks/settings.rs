@@ -277,7 +277,7 @@ fn allow_nodes(access: &mut Access, assembly: &Assembly, router: &str) {
         spec.subscribes().for_each(|topic| access.reads.add(&spec.topic(&topic.name)));
         // The program speaks for a component that failed.
         let is_about = |notice: &&FailureNotice| spec.publishes().any(|topic| topic.name == notice.about.name);
-        FailureNotice::linked().filter(is_about).for_each(|notice| access.writes.add(&spec.topic(&notice.topic.name)));
+        FailureNotice::linked().filter(is_about).for_each(|notice| access.writes.add(&spec.topic(notice.topic.name)));
     }
 }
 
