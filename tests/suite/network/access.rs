@@ -87,7 +87,7 @@ fn a_user_may_do_what_the_components_of_its_node_do() {
     let (server, wrong) =
         (start_as(&programs, "server", "server", "two"), start_as(&programs, "client", "viewer", "three"));
     let refused = "may not call components of other programs over the network";
-    for said in ["component `Sender` may not publish on topic `NUMBERS`", refused] {
+    for said in ["component `Sender` may not read topic `PRESENT`", refused] {
         programs.until(&wrong, said);
     }
     programs.stop(&wrong);
