@@ -75,7 +75,7 @@ impl Maneuver {
 
     /// Grants the moves that are due, and adds the robots to the list. A robot that has to move into another zone is
     /// told to ask for that. False when it is over, or cannot go on: a robot is not where it should be, or does not
-    /// make way any more.
+    /// make way any more, another zone does not grant its block for long, or another robot is on that block.
     pub(crate) fn go_on(&mut self, ledger: &mut Ledger, granted: &mut BTreeSet<u32>) -> bool {
         let rank = self.rank;
         // The zones where they are do not send them elsewhere meanwhile.

@@ -210,8 +210,9 @@ impl Round<'_> {
         if self.decided.contains(&robot) || member.steps.len() > 2 {
             return;
         }
+        self.leads_over_edge = false;
         let outcome = self.advance(robot, None, LINE);
-        if std::mem::take(&mut self.leads_over_edge) {
+        if self.leads_over_edge {
             self.waits_over_edge.insert(robot);
         }
         // How long a robot of another zone waits, that zone counts.
