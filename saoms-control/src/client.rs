@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::description::FleetDescription;
 use crate::network::server_of;
-use crate::place::{connect, folder, remove_if_dead, token_beside};
+use crate::place::{connect, folder, remove_if_dead, token_beside, view_token_beside};
 use crate::token::Token;
 
 /// Time for which an answer is waited for.
@@ -266,7 +266,9 @@ fn introduced(path: &Path) -> Option<(Client, FleetDescription)> {
         Ok(description) => Some((client, description)),
         Err(_) => {
             if remove_if_dead(path).is_ok() {
-                let _ = std::fs::remove_file(token_beside(path));
+                for token in [token_beside(path), view_token_beside(path)] {
+                    let _ = std::fs::remove_file(token);
+                }
             }
             None
         }

@@ -18,9 +18,12 @@ pub struct FleetDescription {
     /// Its address on the network, as `http://127.0.0.1:8080`.
     #[serde(default)]
     pub url: Option<String>,
-    /// The file with the token for that.
+    /// The file with the token for that, with which a client may do everything.
     #[serde(default)]
     pub token_file: Option<String>,
+    /// The file with the token with which a client may see everything.
+    #[serde(default)]
+    pub view_token_file: Option<String>,
     /// The seed of all chance.
     pub seed: u64,
 }

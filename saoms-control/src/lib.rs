@@ -2,7 +2,8 @@
 //!
 //! The server speaks HTTP on a Unix socket of the user, and on the network for clients with its token. It has threads
 //! of its own: the timer of the fleet never waits for it. `openapi` describes its routes. Commands such as
-//! `saoms status` use the [`Client`]; so does any program that speaks HTTP, such as `curl --unix-socket`.
+//! `saoms status` use the [`Client`]; so does any program that speaks HTTP, such as `curl --unix-socket`. Browsers get
+//! the dashboard at `/`, which uses the same routes.
 
 mod alerts;
 mod client;
@@ -24,7 +25,7 @@ pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};
 pub use metrics::{METRICS, Metric};
 pub use network::{NetworkError, NetworkListener};
-pub use place::{Listener, default_socket, token_beside};
+pub use place::{Listener, default_socket, token_beside, view_token_beside};
 pub use server::{ControlServer, ControlledFleet, NetworkDoor, Places, SentLine, openapi, refuse};
-pub use token::{Token, TokenFile};
+pub use token::{Token, TokenFile, Tokens};
 pub use topics::TopicWatch;

@@ -4,15 +4,15 @@ use std::fmt;
 use std::io::{self, ErrorKind};
 use std::net::{IpAddr, SocketAddr, TcpListener, ToSocketAddrs};
 
-use crate::token::TokenFile;
+use crate::token::Tokens;
 
-/// An address at which a fleet listens on the network, for clients with its token.
+/// An address at which a fleet listens on the network, for clients with one of its tokens.
 #[derive(Debug)]
 pub struct NetworkListener {
     pub(crate) socket: TcpListener,
-    pub(crate) token: TokenFile,
+    pub(crate) tokens: Tokens,
     pub(crate) names: HostNames,
-    address: SocketAddr,
+    pub(crate) address: SocketAddr,
 }
 
 /// Error of an address at which a fleet should listen.
@@ -49,7 +49,7 @@ impl NetworkListener {
     ///
     /// # Errors
     /// See [`NetworkError`].
-    pub fn bind(address: &str, is_unencrypted: bool, token: TokenFile) -> Result<NetworkListener, NetworkError> {
+    pub fn bind(address: &str, is_unencrypted: bool, tokens: Tokens) -> Result<NetworkListener, NetworkError> {
         let malformed = |error: io::Error| NetworkError::Malformed(error.to_string());
         let addresses: Vec<SocketAddr> = address.to_socket_addrs().map_err(malformed)?.collect();
         let first = addresses.first().copied().ok_or_else(|| NetworkError::Malformed("it has none".to_owned()))?;
@@ -60,7 +60,7 @@ impl NetworkListener {
         let bound = socket.local_addr().map_err(NetworkError::System)?;
         let name = address.rsplit_once(':').map_or(address, |(name, _)| name);
         let names = HostNames { given: unbracketed(name).to_ascii_lowercase(), is_loopback: bound.ip().is_loopback() };
-        Ok(NetworkListener { socket, token, names, address: bound })
+        Ok(NetworkListener { socket, tokens, names, address: bound })
     }
 
     /// Its URL, as `http://127.0.0.1:8080`.
@@ -68,9 +68,9 @@ impl NetworkListener {
         format!("http://{}", self.address)
     }
 
-    /// The file with its token.
-    pub fn token(&self) -> &TokenFile {
-        &self.token
+    /// The files with its tokens.
+    pub fn tokens(&self) -> &Tokens {
+        &self.tokens
     }
 }
 
@@ -84,6 +84,11 @@ pub(crate) struct HostNames {
 }
 
 impl HostNames {
+    /// Those of this machine alone.
+    pub(crate) fn of_machine() -> HostNames {
+        HostNames { given: "localhost".to_owned(), is_loopback: true }
+    }
+
     /// True if `Host` has such a value, with or without a port. Where other machines reach the server, any address of
     /// it counts: no site has an address for its name.
     pub(crate) fn include(&self, host: &str) -> bool {

@@ -38,10 +38,19 @@ pub fn default_socket(name: &str, pid: u32) -> PathBuf {
     folder().join(format!("{}-{pid}.sock", name.trim_start_matches('.')))
 }
 
-/// The file beside a socket with the token for the network.
+/// The file beside a socket with the token that allows everything, on the network.
 pub fn token_beside(socket: &Path) -> PathBuf {
+    beside(socket, ".token")
+}
+
+/// The file beside a socket with the token that allows to see everything, on the network.
+pub fn view_token_beside(socket: &Path) -> PathBuf {
+    beside(socket, ".view-token")
+}
+
+fn beside(socket: &Path, ending: &str) -> PathBuf {
     let mut file = socket.as_os_str().to_owned();
-    file.push(".token");
+    file.push(ending);
     file.into()
 }
 

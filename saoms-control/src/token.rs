@@ -1,4 +1,4 @@
-//! The secret with which a client on the network shows that it may give orders.
+//! The secrets with which a client on the network shows what it may do.
 
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
@@ -17,6 +17,22 @@ const LENGTHS: (usize, usize) = (16, 1024);
 /// A token. Its text is shown nowhere.
 #[derive(Clone)]
 pub struct Token(String);
+
+/// The tokens of a fleet, one for each right.
+#[derive(Debug)]
+pub struct Tokens {
+    /// With it, a client may do everything.
+    pub control: TokenFile,
+    /// With it, a client sees everything, and can order nothing.
+    pub view: TokenFile,
+}
+
+impl Tokens {
+    /// True if both are the same: who may view could control then.
+    pub fn are_one(&self) -> bool {
+        self.control.token.is(self.view.token.0.as_bytes())
+    }
+}
 
 /// A token in a file that only the user can read. A file that was made for it is removed when this is dropped.
 #[derive(Debug)]
@@ -66,12 +82,6 @@ impl Token {
         is_one.then(|| Token(text.to_owned()))
     }
 
-    fn new() -> io::Result<Token> {
-        let mut chance = [0_u8; CHANCE];
-        File::open("/dev/urandom")?.read_exact(&mut chance)?;
-        Ok(Token(chance.iter().map(|byte| format!("{byte:02x}")).collect()))
-    }
-
     /// The value of `Authorization` that a client sends.
     pub(crate) fn authorization(&self) -> String {
         format!("Bearer {}", self.0)
@@ -80,12 +90,24 @@ impl Token {
     /// True if a client sent this token. How long that takes tells nothing about its text.
     pub(crate) fn is_in(&self, authorization: &[u8]) -> bool {
         let Some((scheme, given)) = authorization.split_at_checked("Bearer ".len()) else { return false };
-        scheme.eq_ignore_ascii_case(b"Bearer ") && are_equal(given, self.0.as_bytes())
+        scheme.eq_ignore_ascii_case(b"Bearer ") && self.is(given)
+    }
+
+    /// True if this is its text. How long that takes tells nothing about it.
+    pub(crate) fn is(&self, text: &[u8]) -> bool {
+        are_equal(text, self.0.as_bytes())
     }
 }
 
+/// A text that nobody can guess.
+pub(crate) fn chance() -> io::Result<String> {
+    let mut chance = [0_u8; CHANCE];
+    File::open("/dev/urandom")?.read_exact(&mut chance)?;
+    Ok(chance.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
 /// Compares all bytes, wherever the first difference is.
-fn are_equal(one: &[u8], other: &[u8]) -> bool {
+pub(crate) fn are_equal(one: &[u8], other: &[u8]) -> bool {
     // The optimizer must not leave the loop early.
     let difference = one.iter().zip(other).fold(0, |found, (one, other)| black_box(found | (one ^ other)));
     one.len() == other.len() && difference == 0
@@ -112,7 +134,7 @@ impl TokenFile {
         }
         let mut file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(path)?;
         let own = OwnFile::of(path)?;
-        let token = Token::new()?;
+        let token = Token(chance()?);
         writeln!(file, "{}", token.0)?;
         Ok(TokenFile { token, path: path.to_owned(), _own: Some(own) })
     }

@@ -6,6 +6,7 @@
 //! - [`RunSummary`]: the counts of a report and their meaning, in reports and on the console,
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
 //! - [`CurvesRegistration`]: figures of a run over time (`saoms run --timeline`), and which of them is its work,
+//! - [`DashboardView`]: what the page for browsers shows of the domain (`saoms run --serve`),
 //! - [`InvariantsRegistration`]: what has to hold in each run, whatever is done to the fleet (`saoms simulate`),
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
@@ -16,6 +17,7 @@
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
 mod curves;
+mod dashboard;
 mod events;
 mod failures;
 mod invariants;
@@ -29,6 +31,7 @@ pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
 pub use curves::{Curve, CurvesRegistration, RunCurves};
+pub use dashboard::DashboardView;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};
 pub use invariants::{

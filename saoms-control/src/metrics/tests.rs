@@ -58,6 +58,7 @@ fn lines(metric: &str) -> Vec<String> {
         is_virtual: false,
         url: None,
         token_file: None,
+        view_token_file: None,
         seed: 0,
     };
     let clients = ClientCounts::default();

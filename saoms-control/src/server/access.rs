@@ -1,52 +1,95 @@
-//! Who may send requests, and how long these may be.
+//! Who may send requests over the network, and what each may do.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 
-use axum::body::{Body, to_bytes};
 use axum::extract::{Request, State};
-use axum::http::header::{AUTHORIZATION, CACHE_CONTROL, CONTENT_LENGTH, HOST, ORIGIN, X_CONTENT_TYPE_OPTIONS};
-use axum::http::{HeaderMap, HeaderValue, Uri};
+use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
+use axum::http::{HeaderMap, Method, Uri};
 use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
+use axum::response::{IntoResponse, Redirect, Response};
 
 use super::answer::Refusal;
+use super::session::{LOGIN, Sessions};
 use crate::counts::ClientCounts;
 use crate::network::HostNames;
-use crate::token::TokenFile;
+use crate::token::Tokens;
 
-/// The most bytes of the body of a request.
-const LONGEST_BODY: usize = 65_536;
-/// Time for the body of a request.
-const BODY: Duration = Duration::from_secs(10);
+/// What a client may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Right {
+    /// See everything, and order nothing.
+    View,
+    /// Everything.
+    Control,
+}
+
+impl Right {
+    /// The right as a word.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Right::View => "view",
+            Right::Control => "control",
+        }
+    }
+
+    /// True if it covers a request: nothing is changed by `GET`.
+    fn covers(self, method: &Method) -> bool {
+        self == Right::Control || matches!(*method, Method::GET | Method::HEAD)
+    }
+}
 
 /// What a request over the network has to show.
 #[derive(Debug)]
 pub(super) struct Access {
     pub(super) names: HostNames,
-    pub(super) token: TokenFile,
+    pub(super) tokens: Tokens,
+    pub(super) sessions: Sessions,
     pub(super) counts: Arc<ClientCounts>,
 }
 
 impl Access {
-    fn refusal(&self, headers: &HeaderMap, uri: &Uri) -> Option<Refusal> {
-        let Some(host) = only(headers, HOST.as_str()).filter(|host| self.names.include(host)) else {
-            return Some(Refusal::forbidden("`Host` is not a name of this server"));
-        };
-        // A target may name its host again.
-        if uri.authority().is_some_and(|authority| !self.names.include(authority.as_str())) {
-            return Some(Refusal::forbidden("the target is not on this server"));
-        }
-        if headers.contains_key(ORIGIN) && !only(headers, ORIGIN.as_str()).is_some_and(|origin| is_same(origin, host)) {
-            return Some(Refusal::forbidden("the request comes from a page of another server"));
-        }
+    /// The right of the token in a request, or of the session of its browser.
+    fn right(&self, headers: &HeaderMap) -> Result<Right, Refusal> {
         let mut authorizations = headers.get_all(AUTHORIZATION).iter();
         let (first, second) = (authorizations.next(), authorizations.next());
-        let shown = first.filter(|_| second.is_none());
-        let has_token = shown.is_some_and(|shown| self.token.token.is_in(shown.as_bytes()));
-        (!has_token).then(Refusal::unauthorized)
+        match first.filter(|_| second.is_none()) {
+            Some(shown) if self.tokens.control.token.is_in(shown.as_bytes()) => Ok(Right::Control),
+            Some(shown) if self.tokens.view.token.is_in(shown.as_bytes()) => Ok(Right::View),
+            // A wrong token is an error, whatever else the request has.
+            None if second.is_none() => self.sessions.right(headers).ok_or_else(Refusal::unauthorized),
+            _ => Err(Refusal::unauthorized()),
+        }
     }
+
+    /// The right of a token as it is typed into the form.
+    pub(super) fn right_of(&self, token: &str) -> Option<Right> {
+        let is = |one: &crate::token::TokenFile| one.token.is(token.as_bytes());
+        if is(&self.tokens.control) {
+            return Some(Right::Control);
+        }
+        is(&self.tokens.view).then_some(Right::View)
+    }
+
+    fn denied(&self, refusal: impl IntoResponse) -> Response {
+        self.counts.denied.fetch_add(1, Ordering::Relaxed);
+        refusal.into_response()
+    }
+}
+
+/// Why a request does not come from this server's own page, or from a program; `None` if it may.
+fn foreign(names: &HostNames, headers: &HeaderMap, uri: &Uri) -> Option<Refusal> {
+    let Some(host) = only(headers, HOST.as_str()).filter(|host| names.include(host)) else {
+        return Some(Refusal::forbidden("`Host` is not a name of this server"));
+    };
+    // A target may name its host again.
+    if uri.authority().is_some_and(|authority| !names.include(authority.as_str())) {
+        return Some(Refusal::forbidden("the target is not on this server"));
+    }
+    if headers.contains_key(ORIGIN) && !only(headers, ORIGIN.as_str()).is_some_and(|origin| is_same(origin, host)) {
+        return Some(Refusal::forbidden("the request comes from a page of another server"));
+    }
+    None
 }
 
 /// The value of a header that is there once, if it is text.
@@ -62,31 +105,41 @@ fn is_same(origin: &str, host: &str) -> bool {
     served.is_some_and(|served| served.eq_ignore_ascii_case(host))
 }
 
-/// Lets a request over the network pass that has the token, and does not come from a page of another site.
-pub(super) async fn guarded(State(access): State<Arc<Access>>, request: Request, next: Next) -> Response {
-    let mut response = match access.refusal(request.headers(), request.uri()) {
-        Some(refusal) => {
-            access.counts.denied.fetch_add(1, Ordering::Relaxed);
-            refusal.into_response()
-        }
+/// Lets a request over the network pass that does not come from a page of another site.
+pub(super) async fn from_here(State(access): State<Arc<Access>>, request: Request, next: Next) -> Response {
+    match foreign(&access.names, request.headers(), request.uri()) {
+        Some(refusal) => access.denied(refusal),
         None => next.run(request).await,
-    };
-    let headers = response.headers_mut();
-    headers.insert(CACHE_CONTROL, HeaderValue::from_static("no-store"));
-    headers.insert(X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
-    response
+    }
 }
 
-/// Reads the whole body of a request, which is short and comes soon.
-pub(super) async fn with_body(request: Request, next: Next) -> Response {
-    let (parts, body) = request.into_parts();
-    let length = parts.headers.get(CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-    if length.is_some_and(|length| length > LONGEST_BODY as u64) {
-        return Refusal::too_long(LONGEST_BODY).into_response();
+/// Lets a request over the network pass that has a token, or the session of a browser, with the right to it.
+pub(super) async fn guarded(State(access): State<Arc<Access>>, mut request: Request, next: Next) -> Response {
+    let right = match access.right(request.headers()) {
+        Ok(right) => right,
+        // A person, who is not to read JSON.
+        Err(_) if request.uri().path() == "/" && request.method() == Method::GET => {
+            return Redirect::to(LOGIN).into_response();
+        }
+        Err(refusal) => return access.denied(refusal),
+    };
+    if !right.covers(request.method()) {
+        return access.denied(Refusal::forbidden(
+            "this token has the right to view: an order needs the token with the right to control",
+        ));
     }
-    match tokio::time::timeout(BODY, to_bytes(body, LONGEST_BODY)).await {
-        Ok(Ok(bytes)) => next.run(Request::from_parts(parts, Body::from(bytes))).await,
-        Ok(Err(_)) => Refusal::too_long(LONGEST_BODY).into_response(),
-        Err(_) => Refusal::too_slow().into_response(),
+    request.extensions_mut().insert(right);
+    next.run(request).await
+}
+
+/// Lets a request at the socket pass, whose clients may do everything: no page of another site, which reaches it where
+/// the user forwards a port to the socket.
+pub(super) async fn at_socket(State(names): State<HostNames>, mut request: Request, next: Next) -> Response {
+    if request.headers().contains_key(ORIGIN)
+        && let Some(refusal) = foreign(&names, request.headers(), request.uri())
+    {
+        return refusal.into_response();
     }
+    request.extensions_mut().insert(Right::Control);
+    next.run(request).await
 }

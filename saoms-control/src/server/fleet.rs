@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use saoms_core::schedule::{Handle, OrderTicket};
+use saoms_core::status::FleetStatus;
 use serde_json::json;
 use tokio::sync::Mutex;
 
@@ -21,6 +22,9 @@ const FRESH: Duration = Duration::from_millis(100);
 
 /// Code that takes a line of events or an order, and says what is wrong with it.
 type SendLine = dyn Fn(&str) -> Result<SentLine, String> + Send + Sync;
+
+/// Code that draws the composites, or says why it cannot.
+type DrawPicture = dyn Fn() -> Result<String, String> + Send + Sync;
 
 /// A line that was taken.
 #[derive(Debug)]
@@ -47,14 +51,17 @@ pub struct ControlledFleet {
     pub(super) send: Box<SendLine>,
     /// Ends the fleet.
     pub(super) down: Box<dyn Fn() + Send + Sync>,
+    /// Draws its composites.
+    pub(super) picture: Box<DrawPicture>,
     /// What is counted of its clients.
     pub(super) counts: Arc<ClientCounts>,
     /// Lines of the file of the log that could not be written.
     lost_lines: Arc<AtomicU64>,
-    /// The last snapshot.
-    pub(super) snapshot: Kept,
+    /// The last snapshot, as text and as it is compared with the one before.
+    pub(super) snapshot: Kept<Bytes>,
+    pub(super) status: Kept<Arc<FleetStatus>>,
     /// The last metrics.
-    pub(super) metrics: Kept,
+    pub(super) metrics: Kept<Bytes>,
 }
 
 impl ControlledFleet {
@@ -76,9 +83,11 @@ impl ControlledFleet {
             alerts,
             send,
             down,
+            picture: Box::new(|| Err("this program cannot draw its composites".to_owned())),
             counts: Arc::default(),
             lost_lines: Arc::default(),
             snapshot: Kept::default(),
+            status: Kept::default(),
             metrics: Kept::default(),
         }
     }
@@ -87,6 +96,12 @@ impl ControlledFleet {
     #[must_use]
     pub fn with_lost_lines(self, lost_lines: Arc<AtomicU64>) -> ControlledFleet {
         ControlledFleet { lost_lines, ..self }
+    }
+
+    /// The same fleet, with code that draws its composites when somebody wants to see them.
+    #[must_use]
+    pub fn with_picture(self, draw: impl Fn() -> Result<String, String> + Send + Sync + 'static) -> ControlledFleet {
+        ControlledFleet { picture: Box::new(draw), ..self }
     }
 
     /// A snapshot as JSON.
@@ -104,22 +119,30 @@ impl ControlledFleet {
 }
 
 /// An answer that is given to all who ask within a short time: however many clients ask, the fleet is asked once.
-#[derive(Default)]
-pub(super) struct Kept(Mutex<Option<(Instant, Bytes)>>);
+pub(super) struct Kept<T>(Mutex<Option<(Instant, T)>>);
 
-impl Kept {
+impl<T> Default for Kept<T> {
+    fn default() -> Kept<T> {
+        Kept(Mutex::default())
+    }
+}
+
+impl<T: Clone + Send + 'static> Kept<T> {
     /// The answer if it is new enough, or else a new one, which is made beside the thread of the server.
-    pub(super) async fn get(&self, make: impl FnOnce() -> String + Send + 'static) -> Result<Bytes, Refusal> {
+    pub(super) async fn get<M: Into<T> + Send + 'static>(
+        &self,
+        make: impl FnOnce() -> M + Send + 'static,
+    ) -> Result<T, Refusal> {
         // Who asks meanwhile waits for the same answer.
         let mut kept = self.0.lock().await;
-        if let Some((at, bytes)) = &*kept
+        if let Some((at, answer)) = &*kept
             && at.elapsed() < FRESH
         {
-            return Ok(bytes.clone());
+            return Ok(answer.clone());
         }
-        let bytes = Bytes::from(waiting(make).await?);
-        *kept = Some((Instant::now(), bytes.clone()));
-        Ok(bytes)
+        let answer: T = waiting(make).await?.into();
+        *kept = Some((Instant::now(), answer.clone()));
+        Ok(answer)
     }
 
     /// Forgets the answer: the next one is made anew.

@@ -3,12 +3,17 @@
 mod access;
 mod alerts;
 mod answer;
+mod body;
+mod changes;
 mod connections;
 mod fleet;
 mod logs;
 mod orders;
 mod over_network;
+mod page;
 mod routes;
+mod session;
+mod stream;
 mod time;
 mod topics;
 
@@ -18,7 +23,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use axum::Router;
-use axum::middleware::from_fn_with_state;
+use axum::middleware::{from_fn, from_fn_with_state};
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
@@ -26,10 +31,12 @@ pub use fleet::{ControlledFleet, SentLine};
 pub use over_network::{NetworkDoor, refuse};
 pub use routes::openapi;
 
-use access::{Access, guarded};
+use access::{Access, at_socket, from_here, guarded};
+use body::{sealed, with_body};
 use connections::serve;
+use session::Sessions;
 
-use crate::network::NetworkListener;
+use crate::network::{HostNames, NetworkListener};
 use crate::place::{Listener, OwnFile};
 
 /// Time for clients that follow the log to take its last lines when the server ends.
@@ -72,14 +79,19 @@ impl ControlServer {
             if let Some(socket) = socket {
                 socket.set_nonblocking(true)?;
                 let socket = tokio::net::UnixListener::from_std(socket)?;
-                runtime.spawn(serve(socket, router.clone(), Arc::clone(&counts)));
+                let open = router.clone().merge(page::assets());
+                let open = open.layer(from_fn_with_state(HostNames::of_machine(), at_socket)).layer(from_fn(sealed));
+                runtime.spawn(serve(socket, open, Arc::clone(&counts)));
             }
-            if let Some(NetworkListener { socket, token, names, .. }) = network {
+            if let Some(NetworkListener { socket, tokens, names, address }) = network {
                 socket.set_nonblocking(true)?;
                 let socket = tokio::net::TcpListener::from_std(socket)?;
-                let access = Access { names, token, counts: Arc::clone(&counts) };
-                let router = router.layer(from_fn_with_state(Arc::new(access), guarded));
-                runtime.spawn(serve(socket, router, counts));
+                let sessions = Sessions::at(address.port());
+                let access = Arc::new(Access { names, tokens, sessions, counts: Arc::clone(&counts) });
+                let guarded = router.layer(from_fn_with_state(Arc::clone(&access), guarded));
+                let all = guarded.merge(session::router(&access).layer(from_fn(with_body)));
+                let all = all.layer(from_fn_with_state(access, from_here)).layer(from_fn(sealed));
+                runtime.spawn(serve(socket, all, counts));
             }
         }
         let (end, ended) = oneshot::channel::<()>();

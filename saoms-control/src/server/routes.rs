@@ -10,20 +10,23 @@ use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use axum::response::Response;
 use axum::routing::{MethodRouter, get, post, put};
-use saoms_api::Time;
 use saoms_api::host::parse_duration;
+use saoms_api::{Cause, Time};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::access::with_body;
 use super::answer::{Answer, Refusal, done, json_text, waiting};
+use super::body::with_body;
 use super::fleet::ControlledFleet;
-use super::{alerts, logs, orders, time, topics};
+use super::{alerts, logs, orders, page, stream, time, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
 /// The lines of the log that a client gets unless it says how many.
 const LINES: usize = 100;
+
+/// What a picture may load where it is looked at alone: nothing; it brings its style along.
+const PICTURE: &str = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
 
 /// Time between the order to end and the end.
 const BEFORE_END: Duration = Duration::from_millis(20);
@@ -69,13 +72,53 @@ const ROUTES: &[Route] = &[
     Route {
         method: "get",
         path: "/v1/why",
-        doc: "The records of the journal that explain what a component did, in the form of a report, as `saoms why` reads it.",
+        doc: "The records of the journal that explain what a component did, in the form of a report, as `saoms why` reads it; `answer` is what follows from them.",
         query: &[
             ("component", "its path, its ID, or an ending of its path"),
             ("at", "explain the last action before this time of the run, such as `10s`; without it, before now"),
         ],
         body: None,
         serve: || get(why),
+    },
+    Route {
+        method: "get",
+        path: "/v1/journal",
+        doc: "The newest records of the journal that a component wrote, oldest first.",
+        query: &[
+            ("component", "its path, its ID, or an ending of its path"),
+            ("after", "the number of a record: only those after it"),
+            ("lines", "the most records; 100 without it"),
+        ],
+        body: None,
+        serve: || get(journal),
+    },
+    Route {
+        method: "get",
+        path: "/v1/stream",
+        doc: "What changes in the fleet as server-sent events, for a page that shows it: `status` with what differs, `alerts`, `log`, `topic` and `records`.",
+        query: &[
+            ("topics", "the topics whose messages to send, separated by blanks"),
+            ("component", "the component whose records of the journal to send"),
+            ("lines", "the number of lines of the log from before; 100 without it"),
+        ],
+        body: None,
+        serve: || get(stream::stream),
+    },
+    Route {
+        method: "get",
+        path: "/v1/picture.svg",
+        doc: "The picture of the composites, as `saoms graph` draws it.",
+        query: &[],
+        body: None,
+        serve: || get(picture),
+    },
+    Route {
+        method: "get",
+        path: "/v1/session",
+        doc: "The `right` of the client, `view` or `control`, and the `views` of the dashboard.",
+        query: &[],
+        body: None,
+        serve: || get(page::session),
     },
     Route {
         method: "get",
@@ -239,6 +282,7 @@ pub(super) fn router(fleet: Arc<ControlledFleet>) -> Router {
     for route in ROUTES {
         router = router.route(route.path, (route.serve)());
     }
+    let router = router.route("/", get(page::index));
     let router = router.fallback(|| async { Refusal::not_found() });
     let router = router.layer(from_fn_with_state(Arc::clone(&fleet), seen_at_once));
     router.layer(from_fn(with_body)).with_state(fleet)
@@ -250,6 +294,7 @@ async fn seen_at_once(State(fleet): Fleet, request: Request, next: Next) -> Resp
     let response = next.run(request).await;
     if is_order {
         fleet.snapshot.forget().await;
+        fleet.status.forget().await;
     }
     response
 }
@@ -316,8 +361,35 @@ struct WhyQuery {
 async fn why(State(fleet): Fleet, Query(query): Query<WhyQuery>) -> Answer {
     let at = query.at.as_deref().map(parse_duration).transpose().map_err(Refusal::unprocessable)?;
     let at = at.map(|at| Time::START + at);
-    let journal = waiting(move || fleet.handle.why(&query.component, at).map(|found| json!(found).to_string())).await?;
-    json_text(journal.map_err(Refusal::unprocessable)?)
+    let answer = waiting(move || -> Result<String, String> {
+        let found = fleet.handle.why(&query.component, at)?;
+        let component = found.components.first().map(|one| one.name.as_str()).unwrap_or_default();
+        let mut answer = json!(found);
+        // What was overwritten is missing from the records, too.
+        answer["answer"] = json!(found.journal.why(component, at).ok());
+        Ok(answer.to_string())
+    });
+    json_text(answer.await?.map_err(Refusal::unprocessable)?)
+}
+
+#[derive(Deserialize)]
+struct JournalQuery {
+    component: String,
+    #[serde(default)]
+    after: u64,
+    lines: Option<usize>,
+}
+
+async fn journal(State(fleet): Fleet, Query(query): Query<JournalQuery>) -> Answer {
+    let JournalQuery { component, after, lines } = query;
+    let most = lines.unwrap_or(LINES);
+    let records = waiting(move || fleet.handle.records(&component, Cause(after), most)).await?;
+    json_text(json!(records.map_err(Refusal::unprocessable)?).to_string())
+}
+
+async fn picture(State(fleet): Fleet) -> Answer {
+    let svg = waiting(move || (fleet.picture)()).await?.map_err(Refusal::unprocessable)?;
+    Ok(([("content-type", "image/svg+xml"), ("content-security-policy", PICTURE)], svg).into_response())
 }
 
 async fn metrics(State(fleet): Fleet) -> Answer {

@@ -4,6 +4,7 @@
 
 mod hostile;
 mod network;
+mod pages;
 mod places;
 
 use std::path::PathBuf;
@@ -13,7 +14,7 @@ use std::time::Duration;
 
 use saoms_control::{
     AlertList, Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkListener, Places,
-    SentLine, Token, TokenFile, TopicWatch, openapi,
+    SentLine, Token, TokenFile, Tokens, TopicWatch, openapi, view_token_beside,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
@@ -25,8 +26,9 @@ struct Served {
     of_network: Client,
     /// Address and port.
     address: String,
-    /// The file with the token.
+    /// The files with the tokens.
     token: PathBuf,
+    view_token: PathBuf,
     downs: Arc<AtomicUsize>,
     socket: PathBuf,
     _server: ControlServer,
@@ -53,6 +55,7 @@ fn served() -> Served {
         is_virtual: true,
         url: None,
         token_file: None,
+        view_token_file: None,
         seed: 1,
     };
     let downs = Arc::new(AtomicUsize::new(0));
@@ -64,13 +67,26 @@ fn served() -> Served {
     };
     let controlled = ControlledFleet::new(description, fleet.handle(), (log, topics, alerts), send, down);
     let token = folder.path().join("fleet.sock.token");
-    let network = NetworkListener::bind("127.0.0.1:0", false, TokenFile::create(&token).unwrap()).unwrap();
+    let view_token = view_token_beside(&socket);
+    let tokens = Tokens { control: TokenFile::create(&token).unwrap(), view: TokenFile::create(&view_token).unwrap() };
+    let network = NetworkListener::bind("127.0.0.1:0", false, tokens).unwrap();
     let of_network = Client::of_network(&network.url(), Token::read(&token).unwrap()).unwrap();
     let address = network.url().strip_prefix("http://").unwrap().to_owned();
     let places = Places { socket: Some(Listener::bind(&socket).unwrap()), network: Some(network) };
     let server = ControlServer::start(places, controlled).unwrap();
     let client = Client::new(&socket);
-    Served { client, of_network, address, token, downs, socket, _server: server, _fleet: fleet, _folder: folder }
+    Served {
+        client,
+        of_network,
+        address,
+        token,
+        view_token,
+        downs,
+        socket,
+        _server: server,
+        _fleet: fleet,
+        _folder: folder,
+    }
 }
 
 #[test]

@@ -4,14 +4,19 @@ use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
 
-use saoms_control::{Client, NetworkError, NetworkListener, Token, TokenFile};
+use saoms_control::{Client, NetworkError, NetworkListener, Token, TokenFile, Tokens};
 
 use super::served;
 
 /// The answer to a request with these headers, to an address and port.
 pub(super) fn answer(address: &str, head: &str) -> String {
+    exchange(address, &format!("{head}\r\n\r\n"))
+}
+
+/// The answer to this text.
+pub(super) fn exchange(address: &str, request: &str) -> String {
     let mut stream = TcpStream::connect(address).unwrap();
-    stream.write_all(format!("{head}\r\n\r\n").as_bytes()).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
     let mut answer = String::new();
     stream.read_to_string(&mut answer).unwrap();
     answer
@@ -73,7 +78,8 @@ fn a_request_needs_the_token_and_comes_from_no_other_site() {
 #[test]
 fn an_address_that_others_reach_has_to_be_allowed() {
     let folder = tempfile::tempdir().unwrap();
-    let token = || TokenFile::create(&folder.path().join("token")).unwrap();
+    let file = |name: &str| TokenFile::create(&folder.path().join(name)).unwrap();
+    let token = || Tokens { control: file("token"), view: file("view-token") };
     for address in ["0.0.0.0:0", "[::]:0", "192.0.2.1:80"] {
         let refused = NetworkListener::bind(address, false, token());
         assert!(matches!(refused, Err(NetworkError::NotLoopback(_))), "{address}");

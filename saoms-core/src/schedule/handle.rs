@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use saoms_api::event::EventCall;
 use saoms_api::event::fault::FaultCall;
-use saoms_api::{Level, Time};
+use saoms_api::{Cause, Level, Time};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
 
@@ -24,7 +24,7 @@ use super::shared::Shared;
 use super::topics;
 use super::topics::takers::{RaiseError, Takers};
 use super::why;
-use crate::journal::LiveJournal;
+use crate::journal::{JournalEntry, LiveJournal};
 use crate::observe::{Observer, RunProgress, SentMessage};
 use crate::status::{FleetMetrics, FleetPhase, FleetStatus, TopicStatus};
 use crate::store::Store;
@@ -135,6 +135,15 @@ impl Handle {
     /// There is no such component, or there are several; the text says what there is.
     pub fn why(&self, component: &str, at: Option<Time>) -> Result<LiveJournal, String> {
         why::why(&self.shared, component, at)
+    }
+
+    /// The newest records of the journal that a component wrote after this one, oldest first, at most so many. The
+    /// component is given as for [`why`](Handle::why). The run waits for no more than a piece of them at a time.
+    ///
+    /// # Errors
+    /// As [`why`](Handle::why).
+    pub fn records(&self, component: &str, after: Cause, most: usize) -> Result<Vec<JournalEntry>, String> {
+        why::records(&self.shared, component, after, most)
     }
 
     /// Gives an order of an operator, which takes effect at the next instant, or at its time, before the executions

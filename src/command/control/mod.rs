@@ -3,6 +3,7 @@
 mod alerts;
 mod emergency;
 mod fleet;
+mod journal;
 mod logs;
 mod orders;
 mod over_network;
@@ -16,6 +17,7 @@ mod topic;
 pub(super) use alerts::{AlertsArguments, alerts};
 pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
 pub(super) use fleet::{RunningFleetArguments, escape};
+pub(super) use journal::{JournalArguments, journal};
 pub(super) use logs::{LogsArguments, logs};
 pub(super) use orders::{
     CallArguments, DownArguments, SendArguments, SetArguments, StartArguments, StopArguments, call, down, send, set,

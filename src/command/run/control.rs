@@ -11,7 +11,7 @@ use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{
     AlertList, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkError, NetworkListener,
-    Places, SentLine, TokenFile, TopicWatch, default_socket, token_beside,
+    Places, SentLine, TokenFile, Tokens, TopicWatch, default_socket, token_beside, view_token_beside,
 };
 use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
@@ -19,7 +19,9 @@ use saoms_core::schedule::Handle;
 use super::RunArguments;
 use super::ending::Signalled;
 use super::events::{Languages, Numbers, Sent};
+use super::picture;
 use crate::Exit;
+use crate::arguments::FleetArguments;
 use crate::output::{displayed, eprint};
 
 /// The value of `--control` for a fleet that nobody can reach.
@@ -28,15 +30,20 @@ const NONE: &str = "none";
 /// Where a fleet is reached over the network.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct NetworkArguments {
-    /// Also serve clients with a token at this address, such as `127.0.0.1:8080`; with port 0 the system chooses a
-    /// port. Without `--token-file`, a new token is written to a file beside the socket
+    /// Also serve the dashboard, and clients with a token, at this address, such as `127.0.0.1:8080`; with port 0 the
+    /// system chooses a port. Without `--token-file` and `--view-token-file`, new tokens are written to files beside
+    /// the socket
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(crate) serve: Option<String>,
 
-    /// The file with the token for `--serve`: at least 16 visible characters; no other user may be able to read the
-    /// file
+    /// The file with the token for `--serve` that allows everything: at least 16 visible characters; no other user may
+    /// be able to read the file
     #[arg(long, value_name = "FILE", requires = "serve")]
     pub(crate) token_file: Option<PathBuf>,
+
+    /// The file with the token for `--serve` that allows to see everything, and to order nothing
+    #[arg(long, value_name = "FILE", requires = "serve")]
+    pub(crate) view_token_file: Option<PathBuf>,
 
     /// Allow `--serve` at an address that other machines can reach, although nothing is encrypted: anyone who can read
     /// the network traffic gets the token, and can control the fleet
@@ -78,7 +85,9 @@ impl Control {
         let beside = arguments.control.as_deref().filter(|path| *path != NONE).map_or(usual.as_path(), Path::new);
         let network = network(&arguments.network, beside)?;
         description.url = network.as_ref().map(NetworkListener::url);
-        description.token_file = network.as_ref().map(|network| network.token().path().display().to_string());
+        let file = |token: &TokenFile| token.path().display().to_string();
+        description.token_file = network.as_ref().map(|network| file(&network.tokens().control));
+        description.view_token_file = network.as_ref().map(|network| file(&network.tokens().view));
         let places = Places { socket, network };
         let is_reached = places.socket.is_some() || places.network.is_some();
         Ok(is_reached.then(|| Control { places, description, log: Arc::default(), topics: Arc::default() }))
@@ -97,9 +106,12 @@ impl Control {
         numbers: &Numbers,
         lost_lines: &Arc<AtomicU64>,
         alerts: &Arc<AlertList>,
+        files: FleetArguments,
     ) -> Option<ControlServer> {
         let Control { places, description, log, topics } = self;
-        let place = description.url.clone().zip(description.token_file.clone());
+        let started = SystemTime::now();
+        let place =
+            description.url.clone().zip(description.token_file.clone()).zip(description.view_token_file.clone());
         let languages = Mutex::new(Languages::of(("(operators)", "a line of an operator"), numbers));
         let fleet = handle.clone();
         let send = move |line: &str| {
@@ -116,10 +128,12 @@ impl Control {
             ControlledFleet::new(description, handle.clone(), (log, topics, Arc::clone(alerts)), send, move || {
                 ending.down(&fleet)
             });
-        match ControlServer::start(places, fleet.with_lost_lines(Arc::clone(lost_lines))) {
+        let fleet = fleet.with_lost_lines(Arc::clone(lost_lines)).with_picture(move || picture::drawn(&files, started));
+        match ControlServer::start(places, fleet) {
             Ok(server) => {
-                if let Some((url, file)) = place {
-                    handle.note(Level::Info, format!("is served at {url}, with the token in `{file}`"));
+                if let Some(((url, file), view)) = place {
+                    let text = format!("is served at {url}, with the token in `{file}`; to see alone, `{view}`");
+                    handle.note(Level::Info, text);
                 }
                 Some(server)
             }
@@ -132,22 +146,27 @@ impl Control {
     }
 }
 
-/// Listens on the network if the command line says so, with the token in its file, or a new one beside the socket.
+/// Listens on the network if the command line says so, with the tokens in its files, or new ones beside the socket.
 fn network(arguments: &NetworkArguments, socket: &Path) -> Result<Option<NetworkListener>, Exit> {
     let Some(address) = &arguments.serve else { return Ok(None) };
-    let token = match &arguments.token_file {
-        Some(file) => TokenFile::given(file)
-            .map_err(|error| unusable(&format!("--token-file {}", displayed(file)), &error, ""))?,
-        None => {
-            let file = token_beside(socket);
-            let told = |error| {
-                let help = "  = help: name a file with a token: `--token-file`\n";
-                unusable(&format!("--serve {}", one_line(address)), &format!("`{}`: {error}", displayed(&file)), help)
-            };
-            TokenFile::create(&file).map_err(told)?
+    let token = |option: &str, given: &Option<PathBuf>, beside: PathBuf| match given {
+        Some(file) => {
+            TokenFile::given(file).map_err(|error| unusable(&format!("{option} {}", displayed(file)), &error, ""))
         }
+        None => TokenFile::create(&beside).map_err(|error| {
+            let help = format!("  = help: name a file with a token: `{option}`\n");
+            unusable(&format!("--serve {}", one_line(address)), &format!("`{}`: {error}", displayed(&beside)), &help)
+        }),
     };
-    let bound = NetworkListener::bind(address, arguments.serve_unencrypted, token).map_err(|error| {
+    let control = token("--token-file", &arguments.token_file, token_beside(socket))?;
+    let view = token("--view-token-file", &arguments.view_token_file, view_token_beside(socket))?;
+    let tokens = Tokens { control, view };
+    if tokens.are_one() {
+        let why = "it holds the token of `--token-file`: who may see the fleet could control it";
+        let help = "  = help: write another token into one of the two files\n";
+        return Err(unusable(&format!("--view-token-file {}", displayed(tokens.view.path())), &why, help));
+    }
+    let bound = NetworkListener::bind(address, arguments.serve_unencrypted, tokens).map_err(|error| {
         let help = match &error {
             NetworkError::NotLoopback(_) => {
                 "  = help: reach 127.0.0.1 from there through a tunnel such as `ssh -L`, or allow it with `--serve-unencrypted`\n"
@@ -182,6 +201,7 @@ fn description(arguments: &RunArguments) -> FleetDescription {
         is_virtual: arguments.virtual_time,
         url: None,
         token_file: None,
+        view_token_file: None,
         seed: arguments.seed,
     }
 }

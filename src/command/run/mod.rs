@@ -11,6 +11,7 @@ mod log_lines;
 mod networks;
 mod notify;
 mod outputs;
+mod picture;
 mod picture_file;
 mod reload;
 mod report_file;
@@ -338,7 +339,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
         clients = networks.join(handle, &signals, &door)?;
-        server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts));
+        server =
+            control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts, files.clone()));
         door.open(server.as_ref());
         Ok(())
     };

@@ -31,6 +31,7 @@ fn each_command_answers_in_json() {
         vec!["estop", "Robot1"],
         vec!["release"],
         vec!["logs", "-n", "1"],
+        vec!["journal", "Robot1", "-n", "1"],
         vec!["pause"],
         vec!["resume"],
         vec!["down"],
@@ -47,6 +48,7 @@ fn what_is_refused_is_told_in_json() {
     for arguments in [
         vec!["status", "Nobody"],
         vec!["why", "Nobody"],
+        vec!["journal", "Nobody"],
         vec!["send", "lugage"],
         vec!["topic", "info", "NOTHING"],
         vec!["topic", "echo", "NOTHING"],

@@ -16,6 +16,12 @@ fn commands_reach_a_fleet_at_its_address_with_its_token() {
     assert_eq!(format!("{}.token", listed[0]["socket"].as_str().unwrap()), file);
     assert_eq!(fs::metadata(file).unwrap().permissions().mode() & 0o777, 0o600);
     let token = fs::read_to_string(file).unwrap().trim().to_owned();
+    let view = listed[0]["view_token_file"].as_str().unwrap();
+    assert_eq!(fs::metadata(view).unwrap().permissions().mode() & 0o777, 0o600);
+    let to_view = ["--fleet", url, "--token-file", view];
+    assert!(running.told(&[&["status"][..], &to_view].concat()).contains("Robot1"));
+    let forbidden = running.refused(&[&["send", "luggage (0,0) to (1,0)"][..], &to_view].concat());
+    assert!(forbidden.contains("the right to view"), "{forbidden}");
 
     let refused = running.refused(&["status", "--fleet", url]);
     assert!(refused.contains("--token-file") && refused.contains("SAOMS_TOKEN_FILE"), "{refused}");
@@ -41,12 +47,14 @@ fn commands_reach_a_fleet_at_its_address_with_its_token() {
     let command = fs::read(format!("/proc/{pid}/cmdline")).unwrap();
     assert!(!String::from_utf8_lossy(&command).contains(&token));
     running.told(&[&["down"][..], &there].concat());
-    let file = file.to_owned();
+    let (file, view) = (file.to_owned(), view.to_owned());
     let mut running = running;
     let (code, printed) = running.wait();
     assert_eq!(code, Some(0), "{printed}");
     assert!(printed.contains(url) && printed.contains(&file) && !printed.contains(&token), "{printed}");
-    assert!(!std::path::Path::new(&file).exists(), "the token ends with the fleet");
+    for file in [file, view] {
+        assert!(!std::path::Path::new(&file).exists(), "the tokens end with the fleet");
+    }
 }
 
 #[test]
@@ -83,6 +91,10 @@ fn an_address_or_token_that_cannot_be_used_starts_nothing() {
     assert!(refused(&["--serve", "8080"]).contains("expected an address and a port"));
     assert!(refused(&["--serve", "127.0.0.1:0", "--token-file", "open"]).contains("chmod 600"));
     assert!(refused(&["--serve", "127.0.0.1:0", "--token-file", "none"]).contains("--token-file none"));
+    assert!(refused(&["--serve", "127.0.0.1:0", "--view-token-file", "none"]).contains("--view-token-file none"));
+    fs::set_permissions(folder.path().join("open"), fs::Permissions::from_mode(0o600)).unwrap();
+    let same = refused(&["--serve", "127.0.0.1:0", "--token-file", "open", "--view-token-file", "open"]);
+    assert!(same.contains("--view-token-file open") && same.contains("another token"), "{same}");
     let left: Vec<_> = fs::read_dir(folder.path().join("saoms")).unwrap().map(|entry| entry.unwrap().path()).collect();
     assert!(left.is_empty(), "{left:?}");
 }

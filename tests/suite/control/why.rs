@@ -1,9 +1,12 @@
 //! Why a robot of a running fleet did something.
 
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
+
 use serde_json::Value;
 
 use super::{Running, fleet};
-use crate::support::stdout;
+use crate::support::{command, stdout};
 
 #[test]
 fn a_running_fleet_gives_the_same_answers_as_its_report() {
@@ -50,5 +53,32 @@ fn what_cannot_be_answered_is_refused_with_the_reason() {
     let both = running.refused(&["why", "Robot1", "--report", "report.json", "--fleet", "fleet"]);
     assert!(both.contains("cannot be used with"), "{both}");
     running.told(&["down"]);
+    assert_eq!(running.end().0, Some(0));
+}
+
+#[test]
+fn the_newest_records_of_a_component_are_shown_and_followed() {
+    let running = Running::start(&fleet(), &["--stay"]);
+    let mut follow = command(&["journal", "Robot1", "--follow"]);
+    follow.current_dir(running.folder()).env("XDG_RUNTIME_DIR", running.folder());
+    let mut follow = follow.stdout(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(follow.stdout.take().unwrap()).lines().map(Result::unwrap);
+    running.told(&["send", "luggage (2,1) to (4,1)"]);
+    let deposits = "Robot1 GripperMS decision: deposits luggage";
+    let mut seen: Vec<String> = Vec::new();
+    while !seen.last().is_some_and(|line| line.contains(deposits)) {
+        seen.push(lines.next().unwrap());
+    }
+    let told = seen.len();
+    seen.dedup();
+    assert_eq!(seen.len(), told, "each record once");
+    running.told(&["pause"]);
+    let all = running.told(&["journal", "Robot1", "-n", "100000"]);
+    let two = running.told(&["journal", "bot1", "-n", "2"]);
+    assert!(all.ends_with(&two) && two.lines().count() == 2, "{two}");
+    assert!(all.starts_with(&seen.join("\n")), "{all}\n{seen:?}");
+    running.told(&["down"]);
+    lines.for_each(drop);
+    assert_eq!(follow.wait().unwrap().code(), Some(0));
     assert_eq!(running.end().0, Some(0));
 }
