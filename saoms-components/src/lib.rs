@@ -7,6 +7,7 @@
 
 pub mod broker;
 pub mod console;
+mod dashboard;
 pub mod environment;
 mod gone;
 pub mod grid;

@@ -1,0 +1,191 @@
+// What is on the floor, from the status of the robots and masters and from the newest messages of topics.
+
+/** States in which a robot needs a person. */
+const BROKEN = new Set(["broken", "stranded", "gone"]);
+/** Conflicts that are listed after they ended. */
+const KEPT = 40;
+
+const at = (pair) => (Array.isArray(pair) ? { x: pair[0], y: pair[1] } : (pair ?? null));
+export const same = (a, b) => a !== null && b !== null && a.x === b.x && a.y === b.y;
+export const place = (block) => (block ? `(${block.x},${block.y})` : "–");
+
+export class Floor {
+  constructor(fleet) {
+    this.fleet = fleet;
+    this.robots = new Map();
+    /** What each robot said last. */
+    this.said = new Map();
+    this.luggage = [];
+    this.conflicts = new Map();
+    this.past = [];
+    this.zones = [];
+    this.grants = new Map();
+    this.area = null;
+    /** The topic of positions of the site that is shown. */
+    this.site = null;
+  }
+
+  /** The topics of messages of a type, those of the site that is shown. */
+  topics(message) {
+    const found = this.fleet.topicList.filter((topic) => topic.message === message).map((topic) => topic.name);
+    const [site] = this.site?.split(/\/(?=[^/]*$)/) ?? [];
+    return this.site?.includes("/") ? found.filter((name) => name.startsWith(`${site}/`)) : found.filter((name) => !name.includes("/"));
+  }
+
+  sites() {
+    return this.fleet.topicList.filter((topic) => topic.message === "Position").map((topic) => topic.name);
+  }
+
+  #messages(type) {
+    return this.topics(type).flatMap((topic) => [...(this.fleet.topics.get(topic)?.values() ?? [])]);
+  }
+
+  update() {
+    this.site ??= this.sites()[0] ?? null;
+    const positions = new Map(this.#messages("Position").map((one) => [one.component, one.message]));
+    const chargers = new Map(this.#messages("RobotList").map((one) => [one.component, one.message?.charger]));
+    const hasSites = this.sites().length > 1;
+    this.#area();
+    this.zones = this.#messages("Territory").map((one) => one.message);
+    const robots = new Map();
+    const luggage = [];
+    for (const one of this.fleet.components.values()) {
+      // A robot that sleeps says nothing: it stays where it was.
+      const values = one.state === "idle" && !("robot" in (one.values ?? {})) ? (this.said.get(one.name) ?? {}) : (one.values ?? {});
+      if (Array.isArray(values.luggage)) luggage.push(...values.luggage);
+      if (typeof values.robot !== "number" || !Array.isArray(values.block)) continue;
+      const position = positions.get(one.name);
+      if (hasSites && !position) continue;
+      this.said.set(one.name, values);
+      const known = this.robots.get(one.name);
+      const block = at(values.block);
+      robots.set(one.name, {
+        path: one.name,
+        number: values.robot,
+        state: one.emergency_stop ? "stopped" : one.state === "running" ? values.state : one.state === "idle" ? "off" : one.state,
+        isBroken: BROKEN.has(values.state) || one.state === "failed",
+        isStopped: one.emergency_stop,
+        isOff: one.state !== "running",
+        isStale: this.fleet.isStale(one),
+        component: one,
+        battery: values.battery,
+        job: values.job,
+        // One that is stopped says that alone.
+        carries: /^carries/.test(values.state) || (values.state === "stopped" && known?.carries === true),
+        delivered: values.delivered,
+        block: position?.block ?? block,
+        next: position?.next ?? block,
+        wanted: position?.wanted ?? block,
+        priority: position?.priority ?? null,
+        charger: chargers.get(one.name) ?? null,
+        waitsFor: values.waits_for_robot,
+        since: values.waits_since_s,
+        // Where it is drawn: it glides to its block.
+        drawn: known?.drawn ?? { ...(position?.block ?? block) },
+      });
+    }
+    this.robots = robots;
+    this.byNumber = new Map([...robots.values()].map((robot) => [robot.number, robot]));
+    this.#luggage(luggage);
+    this.grants = new Map();
+    for (const { message } of this.#messages("Grant")) {
+      const steps = this.grants.get(message.robot) ?? [];
+      steps.push(...message.steps.map((step) => step.block));
+      this.grants.set(message.robot, steps);
+    }
+    this.#conflicts();
+  }
+
+  #area() {
+    const [found] = this.#messages("Area");
+    if (found) {
+      const { width, height, blocked } = found.message;
+      if (this.area?.source !== found) {
+        const bits = blocked.map(BigInt);
+        const isBlocked = (x, y) => {
+          const index = y * width + x;
+          return ((bits[index >> 6] ?? 0n) >> BigInt(index & 63)) & 1n;
+        };
+        const blocks = [];
+        for (let y = 0; y < height; y++) for (let x = 0; x < width; x++) if (isBlocked(x, y)) blocks.push({ x, y });
+        this.area = { source: found, width, height, blocked: blocks };
+      }
+      return;
+    }
+    // Without a world, the floor reaches as far as somebody is.
+    const blocks = [...this.robots.values()].flatMap((robot) => [robot.block, robot.charger, robot.wanted]).concat(this.luggage.flatMap((one) => [one.from, one.to]));
+    const side = (of) => Math.max(5, ...blocks.filter(Boolean).map(of)) + 1;
+    this.area = { source: null, width: side((block) => block.x), height: side((block) => block.y), blocked: [] };
+  }
+
+  #luggage(listed) {
+    const carriers = new Map();
+    for (const robot of this.robots.values()) {
+      const [, number] = /^luggage (\d+) /.exec(robot.job ?? "") ?? [];
+      if (number) carriers.set(Number(number), robot);
+    }
+    this.luggage = listed.map((one) => {
+      const robot = carriers.get(one.luggage) ?? null;
+      const isCarried = robot !== null && robot.carries;
+      return { number: one.luggage, from: at(one.from), to: at(one.to), waits: one.waits, robot, isCarried };
+    });
+  }
+
+  /** Robots that wait for another one, with who goes first, and why. */
+  #conflicts() {
+    const now = new Map();
+    for (const robot of this.robots.values()) {
+      const winner = this.byNumber.get(robot.waitsFor);
+      if (!winner || robot.isOff) continue;
+      const key = `${robot.path}/${winner.path}/${robot.since}`;
+      const block = this.#contested(robot);
+      now.set(key, this.conflicts.get(key) ?? { key, robot: robot.path, winner: winner.path, block, since: robot.since, reason: this.#reason(robot, winner, block), until: null });
+    }
+    for (const [key, one] of this.conflicts) {
+      if (now.has(key)) continue;
+      this.past.unshift({ ...one, until: this.fleet.state.time_s });
+      this.past.length = Math.min(this.past.length, KEPT);
+    }
+    this.conflicts = now;
+  }
+
+  /** The block where a robot waits to go. */
+  #contested(robot) {
+    const grant = this.#messages("Grant").find(({ message }) => message.robot === robot.number && message.waits_for !== 0);
+    if (grant) return grant.message.wanted;
+    return same(robot.wanted, robot.next) ? null : robot.wanted;
+  }
+
+  #reason(robot, winner, block) {
+    if (block) {
+      if (same(winner.block, block)) return `it is on ${place(block)}`;
+      if (same(winner.next, block)) return `it moves to ${place(block)}`;
+      if ((this.grants.get(winner.number) ?? []).some((step) => same(step, block))) return `the zone granted it ${place(block)}`;
+    }
+    if (robot.priority && winner.priority) {
+      const [own, other] = [BigInt(robot.priority.rank), BigInt(winner.priority.rank)];
+      if (other === 2n ** 64n - 1n) return "it never makes way: it handles luggage, has to charge, or cannot move";
+      if (other > own) return "it has the higher priority";
+      if (other === own) return "equal priority: the lower number goes first";
+    }
+    return block ? `it holds or wants ${place(block)}` : "it is in the way";
+  }
+}
+
+/** Pieces that were delivered: the world counts them, or else the robots. */
+export function delivered(fleet) {
+  let [world, robots, isWorld] = [0, 0, false];
+  for (const { values } of fleet.components.values()) {
+    if (!values || typeof values.delivered !== "number") continue;
+    if ("collisions" in values) [world, isWorld] = [world + values.delivered, true];
+    else robots += values.delivered;
+  }
+  return isWorld ? world : robots;
+}
+
+/** The sum of a value of all components that have it. */
+export function total(fleet, name) {
+  let sum = 0;
+  for (const { values } of fleet.components.values()) if (typeof values?.[name] === "number") sum += values[name];
+  return sum;
+}
