@@ -3,6 +3,7 @@
 mod alert_kinds;
 mod alerts;
 mod by_hand;
+mod dashboard;
 mod delivery;
 mod emergency;
 mod exposition;

@@ -1,0 +1,217 @@
+//! The dashboard in a real browser, of a real fleet.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use super::{Running, component, composite, fleet};
+use crate::peers::browser::Browser;
+
+/// A fleet that is served to browsers.
+struct Shown {
+    running: Running,
+    url: String,
+    /// The tokens: to control, and to view.
+    tokens: [String; 2],
+}
+
+fn shown(composite: &str, arguments: &[&str]) -> Shown {
+    let running = Running::start(composite, &[&["--stay", "--serve", "127.0.0.1:0"], arguments].concat());
+    let listed: Value = serde_json::from_str(&running.told(&["ps", "--format", "json"])).unwrap();
+    let token = |name: &str| fs::read_to_string(listed[0][name].as_str().unwrap()).unwrap().trim().to_owned();
+    let tokens = [token("token_file"), token("view_token_file")];
+    Shown { url: listed[0]["url"].as_str().unwrap().to_owned(), tokens, running }
+}
+
+impl Shown {
+    /// Logs a browser in.
+    fn log_in(&self, browser: &mut Browser, token: &str) {
+        browser.open(&self.url);
+        browser.fill("#token", token);
+        browser.click("form button");
+    }
+
+    /// The values of a robot in `saoms status`, and what its row in the page has to say of them.
+    fn row(&self, name: &str) -> [String; 4] {
+        let robot = self.running.component(name);
+        let values = &robot["values"];
+        let block = values["block"].as_array().unwrap();
+        [
+            values["state"].as_str().unwrap().to_owned(),
+            format!("{} %", values["battery"].as_f64().unwrap().round()),
+            format!("({},{})", block[0], block[1]),
+            values["delivered"].to_string(),
+        ]
+    }
+}
+
+/// An expression: the cells of a robot's row in the page.
+fn cells(robot: &str) -> String {
+    format!(
+        "JSON.stringify([...document.querySelector('tr[data-robot={robot}]').cells].slice(1).map((one) => one.textContent))"
+    )
+}
+
+/// An expression: true while this text is in an element.
+fn says(selector: &str, text: &str) -> String {
+    format!("!!document.querySelector({})?.textContent.includes({})", json!(selector), json!(text))
+}
+
+#[test]
+fn a_person_sees_the_fleet_and_steers_it() {
+    let Some(mut browser) = Browser::start("dashboard") else { return };
+    let shown = shown(&fleet(), &["--report", "report.json"]);
+    let Shown { running, tokens, .. } = &shown;
+    shown.log_in(&mut browser, "0123456789abcdef");
+    browser.until(&says(".wrong", "not a token"));
+    shown.log_in(&mut browser, &tokens[0]);
+
+    browser.until("document.querySelectorAll('tr[data-robot]').length === 1");
+    browser.until(&says("#phase", "running"));
+
+    // It stops the fleet, and sends luggage that no robot moves for.
+    browser.click("header [data-order='Emergency stop']");
+    browser.until(&says("#phase", "stopped"));
+    browser.until("!document.querySelector('[aria-busy=true]')");
+    assert_eq!(running.component("Robot1")["emergency_stop"], true);
+    let log = running.told(&["logs"]);
+    assert!(log.contains("emergency stop by dashboard"), "{log}");
+    browser.fill("[aria-label='Block where the luggage is']", "(3,1)");
+    browser.fill("[aria-label='Block where it has to go']", "6 8");
+    browser.click("[data-order='Send luggage']");
+    browser.until(&says(".counts", "1 open piece"));
+    let before = browser.value(&cells("Robot1"));
+
+    // It releases the robots, and sees that they move.
+    browser.value(&format!(
+        "window.seen = new Set(); window.looks = setInterval(() => seen.add({}), 20)",
+        cells("Robot1")
+    ));
+    browser.click("header [data-order='Release all']");
+    browser.until(&says("#phase", "running"));
+    assert_eq!(running.component("Robot1")["emergency_stop"], false);
+    browser.until(&format!("{} !== {before}", cells("Robot1")));
+    browser.until("seen.size > 4");
+    browser.value("clearInterval(looks)");
+    browser.click("header [data-order='Pause']");
+    browser.until(&says("#phase", "paused"));
+    assert!(running.told(&["status"]).contains("paused"));
+    browser.click("header [data-order='Resume']");
+    browser.until(&says("#phase", "running"));
+
+    // What it shows is what the fleet says.
+    browser.until(&says("#summary", "1 of 1 pieces of luggage delivered"));
+    running.until("Robot1", |robot| robot["values"]["state"] == "free" || robot["values"]["state"] == "asleep");
+    browser.until(&says("tr[data-robot=Robot1] .state", &shown.row("Robot1")[0]));
+    let expected = json!(shown.row("Robot1")).to_string();
+    browser.until(&format!("{} === {}", cells("Robot1"), json!(expected)));
+
+    // Robot2 is woken, breaks down, and is what an alert is about.
+    browser.open(&format!("{}/#/component/Robot2", shown.url));
+    browser.click("main [data-order='Start']");
+    browser.until(&says("main .state", "running"));
+    assert_eq!(running.component("Robot2")["state"], "running");
+    browser.open(&format!("{}/#/floor", shown.url));
+    browser.value("window.confirm = () => true");
+    browser.click("tr[data-robot=Robot2] button");
+    browser.click("[data-order='Break down']");
+    browser.until(&says("tr[data-robot=Robot2] .state", "broken"));
+    browser.until(&says(".badge", "1"));
+    browser.open(&format!("{}/#/alerts", shown.url));
+    browser.until(&says("ol.alerts", "needs assistance"));
+    browser.click("[data-order='Acknowledge']");
+    browser.until(&says("ol.alerts", "acknowledged by dashboard"));
+    assert_eq!(running.told(&["alerts"]), "no alerts\n");
+
+    // Why a robot did what it did.
+    browser.open(&format!("{}/#/component/Robot1", shown.url));
+    browser.until("document.querySelectorAll('ol.records li').length > 10");
+    browser.click(".choices button:last-child");
+    browser.until("document.querySelectorAll('.timeline .mark').length > 10");
+    // It does nothing more meanwhile.
+    running.told(&["pause"]);
+    browser.click(".columns .bar button");
+    browser.until("document.querySelectorAll('.why ol.chain li').length > 0");
+    let why: Value = serde_json::from_str(&running.told(&["why", "Robot1", "--format", "json"])).unwrap();
+    let first = why["chains"][0]["acts"][0]["text"].as_str().unwrap();
+    assert_eq!(browser.text(".why ol.chain li .what"), first);
+    let records = running.told(&["journal", "Robot1", "-n", "100000"]);
+    assert!(records.contains("GripperMS decision: deposits luggage"), "{records}");
+    running.told(&["resume"]);
+
+    // The other parts.
+    for (part, seen) in [
+        ("components", "document.querySelectorAll('table.components tbody tr').length === 4"),
+        ("topics", "document.body.textContent.includes('POSTOPIC')"),
+        ("log", "document.querySelectorAll('ol.log li').length > 3"),
+        ("plots", "document.querySelectorAll('.plot .line').length > 5"),
+        ("assembly", "document.querySelector('.picture img').naturalWidth > 100"),
+    ] {
+        browser.open(&format!("{}/#/{part}", shown.url));
+        browser.until(seen);
+    }
+    assert_eq!(browser.errors(), Vec::<String>::new());
+
+    running.told(&["down"]);
+    browser.until(&says("#connection", "The connection is lost"));
+    browser.until("document.body.classList.contains('lost')");
+    let summary = browser.text("#summary");
+    let mut running = shown.running;
+    let (code, printed) = running.wait();
+    // The robot that broke down is reported as an error, and fails no run.
+    assert_eq!(code, Some(0), "{printed}");
+    let report: Value =
+        serde_json::from_str(&fs::read_to_string(running.folder().join("report.json")).unwrap()).unwrap();
+    let luggage = &report["luggage"];
+    assert_eq!(summary, format!("{} of {} pieces of luggage delivered", luggage["delivered"], luggage["requested"]));
+}
+
+#[test]
+fn who_may_view_can_press_no_button() {
+    let Some(mut browser) = Browser::start("dashboard-view") else { return };
+    let shown = shown(&fleet(), &[]);
+    shown.log_in(&mut browser, &shown.tokens[1]);
+    browser.until("document.querySelectorAll('tr[data-robot]').length === 1");
+    browser.click("tr[data-robot=Robot1] button");
+    browser.until("document.querySelectorAll('[data-order]').length > 6");
+    assert_eq!(browser.value("[...document.querySelectorAll('[data-order]')].every((one) => one.disabled)"), true);
+    // The page is not what hinders it.
+    let asked = "fetch('/v1/estop', {method: 'POST'}).then((answer) => answer.status)";
+    assert_eq!(browser.value(asked), 403);
+    assert_eq!(shown.running.component("Robot1")["emergency_stop"], false);
+    browser.click("form[action='/logout'] button");
+    browser.until("location.pathname === '/login'");
+    assert_eq!(browser.value("fetch('/v1/status').then((answer) => answer.status)"), 401);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn names_and_lines_of_a_fleet_are_text() {
+    let Some(mut browser) = Browser::start("dashboard-text") else { return };
+    let odd = component("&lt;img&gt;&lt;script&gt;7", "saoms.Robot", "");
+    let shown = shown(&composite(&[component("Master", "saoms.MasterEnvironment", ""), odd].concat()), &[]);
+    let Shown { running, tokens, url } = &shown;
+    let (robot, operator) = ("<img><script>7", "<script>document.title='owned'</script>");
+    shown.log_in(&mut browser, &tokens[0]);
+    let named = "document.querySelector('tr[data-robot] button').textContent";
+    browser.until(&format!("!!document.querySelector('tr[data-robot]') && {named} === {}", json!(robot)));
+    // The name of the operator is in the log and in an alert.
+    running.told(&["send", &format!("estop by {operator}")]);
+    for (part, place) in [("floor", "table.robots"), ("components", "table.components"), ("topics", "main")] {
+        browser.open(&format!("{url}/#/{part}"));
+        browser.until(&format!("!!document.querySelector('{place}')"));
+        assert_eq!(browser.value("document.querySelectorAll('main img, body script').length"), 0, "{part}");
+    }
+    for (part, place) in [("log", "ol.log"), ("alerts", "ol.alerts")] {
+        browser.open(&format!("{url}/#/{part}"));
+        browser.until(&says(place, operator));
+        browser.until(&says(place, robot));
+        assert_eq!(browser.value("document.querySelectorAll('main img, body script').length"), 0, "{part}");
+    }
+    browser.open(&format!("{url}/#/component/{}", "%3Cimg%3E%3Cscript%3E7"));
+    browser.until(&says("main h2", robot));
+    browser.until("document.querySelectorAll('ol.records li').length > 0");
+    assert_eq!(browser.value("document.querySelectorAll('main img, body script').length"), 0);
+    assert!(!browser.value("document.title").to_string().contains("owned"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
