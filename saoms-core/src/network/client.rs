@@ -98,9 +98,14 @@ fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
         if slept > HELD_UP {
             member.exchange.hold_up(slept);
         }
+        // What was left until it had started is taken, too.
+        let has_started = member.is_joining() && member.fleet.has_started();
         let waiting = port.take();
         let (is_closed, has_time) = (waiting.is_closed, waiting.has_no_more_than_messages());
         member.take(waiting);
+        if has_started {
+            member.tell_joined();
+        }
         if !(has_time && member.has_time()) || is_closed {
             member.attend();
         }

@@ -21,6 +21,9 @@ pub struct FromNetwork {
 
 /// The fleet of a program, as its part of a network sees it.
 pub trait Fleet: Send + 'static {
+    /// True once its components are there: what they read was left at the port before.
+    fn has_started(&self) -> bool;
+
     /// Takes messages from the front, as many as find room.
     fn deliver(&self, messages: &mut VecDeque<FromNetwork>);
 

@@ -242,8 +242,10 @@ impl Who<'_> {
         loop {
             let why = match TransportSession::open(transport, self.settings, Arc::clone(port) as Arc<_>) {
                 Ok(Opened::Session(session)) => {
-                    let what = if self.settings.listen { "listens at" } else { "has joined the network at" };
-                    handle.note(Level::Info, format!("the program {what} `{url}`"));
+                    // Who joins says so once it hears all that its components read.
+                    if self.settings.listen {
+                        handle.note(Level::Info, format!("the program listens at `{url}`"));
+                    }
                     return Ok(Some(session));
                 }
                 Ok(Opened::Unreachable(why)) => why,

@@ -49,6 +49,19 @@ fn programs_wait_for_the_broker() {
 }
 
 #[test]
+fn a_program_says_that_it_has_joined_once_it_hears_what_it_reads() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let reader = reader(&programs, "reader", programs.port, &[("count", "10"), ("prepares", "1500")]);
+    programs.until(&reader, "has joined the network at");
+    assert!(reader.printed().contains("is ready"), "{}", reader.printed());
+    let senders = senders(&programs, programs.port, &[("count", "10"), ("each", "1")]);
+    receives_all(&programs, &reader, "10");
+    programs.ends(&senders, 0);
+    programs.end(&broker);
+}
+
+#[test]
 fn robots_of_another_program_deliver_all_luggage_over_zenoh_too() {
     let programs = Programs::over(Transport::Zenoh);
     let (work, robots) = (work(&programs), robots(&programs));

@@ -64,6 +64,8 @@ pub(super) struct Member<F> {
     /// True if it was told that programs are waited for.
     has_told_who_lacks: bool,
     pub(super) membership: Membership,
+    /// True until it was told that this program has joined.
+    is_joining: bool,
     /// What the user of this program may do.
     rights: Option<Rights>,
     /// When the router last said what users may do.
@@ -107,6 +109,7 @@ impl<F: Fleet> Member<F> {
             has_told_who_lacks: false,
             rights: membership.user.clone().map(|user| Rights::new(membership.url.clone(), user)),
             membership,
+            is_joining: true,
             granted_at: None,
             next_token: FIRST_OF_TOPICS,
             tokens: HashMap::new(),
@@ -117,6 +120,21 @@ impl<F: Fleet> Member<F> {
             port: Arc::clone(port),
             name: settings.name.clone(),
             exchange: Exchange::new(settings),
+        }
+    }
+
+    /// True until it was told that this program has joined.
+    pub(super) fn is_joining(&self) -> bool {
+        self.is_joining
+    }
+
+    /// Tells that this program has joined: all that its components read from the start on is subscribed. A router
+    /// has told that it listens.
+    pub(super) fn tell_joined(&mut self) {
+        self.is_joining = false;
+        if self.session.as_ref().is_some_and(|session| !session.is_router()) {
+            let text = format!("the program has joined the network at `{}`", self.membership.url);
+            self.fleet.tell(Level::Info, text);
         }
     }
 

@@ -134,6 +134,7 @@ impl Transport {
 pub struct TransportSession {
     table: &'static TransportTable,
     session: *mut c_void,
+    is_router: bool,
     /// What the session calls, until it is closed.
     state: *const EventState,
 }
@@ -169,7 +170,7 @@ impl TransportSession {
             unsafe { (table.open)(Bytes::text(&text), &raw const events, &raw mut session, error) }
         });
         if status == Status::OK && !session.is_null() {
-            return Ok(Opened::Session(TransportSession { table, session, state }));
+            return Ok(Opened::Session(TransportSession { table, session, is_router: settings.listen, state }));
         }
         // SAFETY: there is no session that would call anything with it.
         drop(unsafe { Box::from_raw(state.cast_mut()) });
@@ -178,6 +179,11 @@ impl TransportSession {
             Status::OK => Err("it gave no session".to_owned()),
             _ => Err(error),
         }
+    }
+
+    /// True for the router of its network.
+    pub fn is_router(&self) -> bool {
+        self.is_router
     }
 
     /// Sends a message; urgent ones are few and short, and should overtake others. False: there is no room for it now.

@@ -236,6 +236,10 @@ pub struct NetworkedFleet {
 }
 
 impl Fleet for NetworkedFleet {
+    fn has_started(&self) -> bool {
+        self.shared.look(|engine| engine.phase != RunPhase::Starting)
+    }
+
     fn deliver(&self, messages: &mut VecDeque<FromNetwork>) {
         if messages.is_empty() {
             return;

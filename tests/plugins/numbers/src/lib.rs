@@ -1,6 +1,8 @@
 //! Numbered events, and readers that hold what they receive to what was sent; walkers that hear who is near.
 
 use std::collections::BTreeMap;
+use std::thread::sleep;
+use std::time::Duration;
 
 use saoms_api::{Class, Component, Context, Failure, Field, Message, Publisher, Region, Subscription, Topic, Work};
 
@@ -96,6 +98,9 @@ pub struct Reader {
     /// The letters of the text in each event.
     #[property(default = 0)]
     size: u32,
+    /// Milliseconds that it takes to initialize.
+    #[property(default = 0)]
+    prepares: u32,
     #[subscribes(NUMBERS)]
     numbers: Subscription<Number>,
     #[publishes(PRESENT)]
@@ -117,6 +122,10 @@ impl Component for Reader {
         }
         self.complete = self.last.values().filter(|last| **last == self.count).count() as u32;
         self.before = self.last.clone();
+        if self.prepares > 0 {
+            sleep(Duration::from_millis(self.prepares.into()));
+            context.info("is ready");
+        }
         Ok(())
     }
 
