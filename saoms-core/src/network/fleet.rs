@@ -67,6 +67,8 @@ pub trait Fleet: Send + 'static {
 pub struct Membership {
     /// Where the network is.
     pub url: String,
+    /// Of a network without a router, its other programs: the name of each, and where it listens.
+    pub peers: Vec<(String, String)>,
     /// The user as which it has joined.
     pub user: Option<String>,
     /// Of the router: what it lets users do, if that is not everything.

@@ -123,6 +123,7 @@ impl Networks {
                     let granted = settings::granted(&described, &settings.users, assembly);
                     let membership = Membership {
                         url: url.clone(),
+                        peers: peers(&url).into_iter().flatten().filter(|(peer, _)| *peer != name).map(owned).collect(),
                         user: settings.account.as_ref().map(|account| account.user.clone()),
                         grants: (!granted.is_empty()).then(|| Granted::of(&granted)),
                         readers: readers(assembly, &url),
@@ -275,6 +276,10 @@ impl Who<'_> {
             }
         }
     }
+}
+
+fn owned((name, address): (&str, &str)) -> (String, String) {
+    (name.to_owned(), address.to_owned())
 }
 
 /// The components of this program that are on a network, those among them that are called over it.

@@ -55,6 +55,29 @@ fn nodes_without_a_broker_are_one_fleet() {
 }
 
 #[test]
+fn a_program_that_finds_none_of_its_peers_says_so_once() {
+    let programs = Programs::over(Transport::Zenoh);
+    let url = url(&["other", "reader"]);
+    let address = url.strip_prefix("peers://other=").and_then(|rest| rest.split(',').next()).unwrap();
+    let task = |name: &str| {
+        let component = format!("{name}-Reader");
+        programs.start(name, &on_network(&url, &[], &[(&component, "numbers.Reader", &[("count", "1")])]))
+    };
+    let reader = task("reader");
+    let waits = format!("waits for the other programs of the network `{url}`: none of them is there yet");
+    programs.until(&reader, &format!("{waits}; it tries `other` at {address}: start them, or correct `url`"));
+    let other = task("other");
+    programs.until(&reader, "program `other` is on the network");
+    programs.stop(&other);
+    programs.until(&reader, "program `other` has left the network");
+    // Longer than it waits before it says so.
+    sleep(Duration::from_secs(3));
+    programs.stop(&reader);
+    assert_eq!(reader.printed().matches(&waits).count(), 1, "{}", reader.printed());
+    assert!(!other.printed().contains("none of them is there"), "{}", other.printed());
+}
+
+#[test]
 fn peers_go_on_without_one_that_is_killed_and_take_in_who_comes_in_its_place() {
     let programs = Programs::over(Transport::Zenoh);
     let url = url(&["other", "reader", "senders"]);

@@ -1,10 +1,17 @@
 //! The link of a program to the others of a network.
 
+use saoms_api::Level;
+
 use super::member::Member;
 use crate::network::Fleet;
 
 /// The kind of alerts of links.
 const LINK: &str = "link";
+
+/// Time after which a program says that none of its peers is there, in nanoseconds: those that are connect in it.
+const ALONE: u64 = 2_000_000_000;
+/// Peers that are named, at most.
+const MOST_NAMED: usize = 8;
 
 /// The link to the other programs.
 #[derive(Debug, Default)]
@@ -13,6 +20,8 @@ pub(super) struct Link {
     down: Option<u64>,
     /// True if it counts as lost.
     is_lost: bool,
+    /// True if it was told that none of the peers is there.
+    has_told_alone: bool,
 }
 
 impl Link {
@@ -37,5 +46,26 @@ impl<F: Fleet> Member<F> {
         if is_lost {
             self.fleet.lose();
         }
+    }
+
+    /// Tells once that none of the programs is there which the url of a network without a router names.
+    pub(super) fn look_for_peers(&mut self, now: u64) {
+        let peers = &self.membership.peers;
+        if self.link.has_told_alone || peers.is_empty() || now < ALONE || !self.exchange.has_met_nobody() {
+            return;
+        }
+        self.link.has_told_alone = true;
+        let mut named: Vec<String> =
+            peers.iter().take(MOST_NAMED).map(|(name, address)| format!("`{name}` at {address}")).collect();
+        if let Some(more) = peers.len().checked_sub(MOST_NAMED).filter(|more| *more > 0) {
+            named.push(format!("{more} more"));
+        }
+        let text = format!(
+            "waits for the other programs of the network `{}`: none of them is there yet; it tries {}: start them, or correct \
+             `url`, which is the same in all of them",
+            self.membership.url,
+            named.join(", ")
+        );
+        self.fleet.tell(Level::Warning, text);
     }
 }

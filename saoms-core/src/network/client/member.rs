@@ -153,6 +153,7 @@ impl<F: Fleet> Member<F> {
         self.confirm();
         self.agree(now);
         self.watch_link(now);
+        self.look_for_peers(now);
         self.requests.forget(now);
     }
 

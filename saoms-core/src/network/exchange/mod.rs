@@ -382,6 +382,11 @@ impl Exchange {
         self.peers.iter().map(|(program, peer)| (*program, &peer.name))
     }
 
+    /// True if no other program was ever heard.
+    pub fn has_met_nobody(&self) -> bool {
+        self.left.is_empty() && self.peers.values().all(|peer| peer.is_recalled)
+    }
+
     /// True if other programs are known, and none of them gives a sign of life.
     pub fn hears_nobody(&self) -> bool {
         let mut heard = self.peers.values().filter(|peer| !peer.is_recalled).peekable();
