@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 
 use saoms_api::Properties;
-use saoms_api::host::{PropertyValue, WriteProperties};
+use saoms_api::host::{PropertyValue, WriteProperties, format_duration};
 use saoms_lang::assembly::{Assembly, ComponentSpec, OF_RESTART, Restart, RunPolicy, TaskProperties, WireTarget};
 use saoms_lang::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
 use saoms_lang::model::{Composite, Hangup, SAOMS_NAMESPACE, SeverityRule, Version};
@@ -40,7 +40,12 @@ pub fn expanded(compilation: &Compilation<Assembly>) -> Option<String> {
         let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
             let uri = |target: &WireTarget| format!("{}/{}", names[target.component], target.service);
             let targets: Vec<String> = wire.targets.iter().map(uri).collect();
-            NewElement::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
+            let node =
+                NewElement::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "));
+            match wire.deadline {
+                None => node,
+                Some(deadline) => node.with("s:deadline", format_duration(deadline)).declare("s", SAOMS_NAMESPACE),
+            }
         });
         component(one, name, references)
     });

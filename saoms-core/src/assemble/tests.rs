@@ -72,6 +72,7 @@ fn assembly(text: &str) -> Assembly {
                         .into_iter()
                         .collect(),
                     elsewhere: Box::default(),
+                    deadline: None,
                 }),
             }
         }
@@ -149,7 +150,13 @@ fn assembly_of_chain(text: &str) -> Assembly {
             .then(|| WireTarget { component: place + 1, service: "s".to_owned() })
             .into_iter()
             .collect();
-        let wire = Wire { reference: "next".to_owned(), interface: "i".to_owned(), targets, elsewhere: Box::default() };
+        let wire = Wire {
+            reference: "next".to_owned(),
+            interface: "i".to_owned(),
+            targets,
+            elsewhere: Box::default(),
+            deadline: None,
+        };
         let path = line.split(' ').next().unwrap().to_owned();
         assembly.components.push(ComponentSpec { path, references: vec![wire], ..first.clone() });
     }

@@ -44,6 +44,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         interface: interface.to_owned(),
         targets: Vec::new(),
         elsewhere: Box::default(),
+        deadline: None,
     };
     let mut references = vec![wire("peer", "test.Echo"), wire("task", "unibg.robotics.tca.TaskInterface")];
     let mut values = Vec::new();

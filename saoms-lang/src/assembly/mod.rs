@@ -14,6 +14,7 @@ mod traffic;
 
 use std::borrow::Cow;
 use std::sync::Arc;
+use std::time::Duration;
 
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
@@ -129,6 +130,8 @@ pub struct Wire {
     pub targets: Vec<WireTarget>,
     /// Those of them that are in other programs, which follow them; see [`Assembly::at`].
     pub elsewhere: Box<[RemoteTarget]>,
+    /// The time within which a call of these is answered, where the composite gives it.
+    pub deadline: Option<Duration>,
 }
 
 /// A service of a component of another program.

@@ -74,6 +74,11 @@ pub(crate) fn assemble(
                 })
                 .collect(),
             elsewhere: Box::default(),
+            deadline: member
+                .component
+                .reference(&declared.name)
+                .and_then(|one| one.deadline.as_ref())
+                .map(|one| one.value),
         });
         components.push(ComponentSpec {
             path: member.path().to_owned(),

@@ -159,6 +159,7 @@ codes! {
     NODE_MISSING = "S2063" Error "node-missing": "Some components of a fleet are in a node, and others are in none: no program would run them.";
     UNKNOWN_NODE = "S2064" Error "unknown-node": "The node that is to run does not exist in the fleet.";
     WIRE_BETWEEN_NODES = "S2065" Error "wire-between-nodes" [OutlivesExpansion]: "A reference of a component leads to a component of another node, and cannot be called over.";
+    CALL_DEADLINE_UNUSED = "S2066" Warning "call-deadline-unused" [OutlivesExpansion, WithoutEffect]: "A deadline of calls has no effect: no call through the reference waits for another node.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has a kind of implementation that this program cannot run.";

@@ -1,5 +1,9 @@
 //! Services and references, their interfaces, callbacks and bindings.
 
+use std::time::Duration;
+
+use saoms_api::host::{meant_duration, parse_duration};
+
 use super::Loader;
 use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
@@ -7,9 +11,10 @@ use super::vocabulary::{
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
-    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Origin, ReferenceElement, ServiceElement,
+    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Origin, ReferenceElement, SAOMS_NAMESPACE,
+    ServiceElement,
 };
-use crate::source::Text;
+use crate::source::{Located, Text};
 use crate::syntax::Element;
 
 impl Loader<'_> {
@@ -50,8 +55,23 @@ impl Loader<'_> {
             autowire: self.boolean(element, "autowire"),
             wired_by_impl: self.boolean(element, "wiredByImpl"),
             non_overridable: self.boolean(element, "nonOverridable"),
+            deadline: self.deadline(element).map(Box::new),
             contract,
         }
+    }
+
+    /// The time within which a call through a reference is answered.
+    fn deadline(&mut self, element: Element<'_>) -> Option<Located<Duration>> {
+        let text = self.own(element, "deadline")?;
+        let why = match parse_duration(&text) {
+            Ok(Duration::ZERO) => "no call is answered within no time".to_owned(),
+            Ok(deadline) => return Some(Located::new(deadline, text.location)),
+            Err(why) => why,
+        };
+        let attribute = element.attribute_in(SAOMS_NAMESPACE, "deadline")?;
+        let message = format!("{}: {why}", quoted(attribute.name()));
+        self.value_fault(attribute, message, meant_duration(&text).as_deref());
+        None
     }
 
     /// The references that a composite's reference promotes. The schema lets the list be empty.

@@ -1,5 +1,7 @@
 //! Services and references, with their interfaces, callbacks and bindings.
 
+use std::time::Duration;
+
 use smol_str::SmolStr;
 
 use super::Origin;
@@ -37,6 +39,9 @@ pub struct ReferenceElement {
     pub wired_by_impl: Option<Located<bool>>,
     /// `nonOverridable` (1.1).
     pub non_overridable: Option<Located<bool>>,
+    /// `deadline`, in the namespace of SAOMS: the time within which a call of another program is answered, in a box:
+    /// most have none.
+    pub deadline: Option<Box<Located<Duration>>>,
     /// Its interface, bindings and callback, in a box: most have none. [`Self::contract`] gives it.
     pub contract: Option<Box<Contract>>,
 }

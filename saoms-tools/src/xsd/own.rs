@@ -81,7 +81,7 @@ pub(super) fn type_of(holds: Holds, is_required: bool) -> &'static str {
         Holds::Value => "saoms:Value",
         Holds::Boolean => "xs:boolean",
         Holds::Multiplicity => "saoms:Multiplicity",
-        Holds::Variable | Holds::Code => "saoms:Given",
+        Holds::Variable | Holds::Code | Holds::Duration => "saoms:Given",
         Holds::Level => "saoms:Level",
         Holds::Hangup => "saoms:Hangup",
         Holds::Composite | Holds::End if is_required => "saoms:Given",

@@ -114,6 +114,33 @@ fn a_call_of_a_program_that_is_not_there_fails_at_its_deadline() {
 }
 
 #[test]
+fn a_reference_sets_the_deadline_of_its_calls() {
+    for (deadline, more, answered) in
+        [("500ms", &[("calls", "1")][..], 0), ("1min", &[("calls", "1"), ("rest", "4000")], 1)]
+    {
+        let programs = Programs::new();
+        write_fleet(&programs, "calls.Caller", more);
+        let given = format!("target=\"Tally\" s:deadline=\"{deadline}\"");
+        programs.write("fleet.composite", &programs.read("fleet.composite").replace("target=\"Tally\"", &given));
+        let (broker, client) = (start(&programs, "broker"), start(&programs, "client"));
+        // Without a server, a call fails in time; with one, it is waited for longer than usual.
+        match answered {
+            0 => programs.until(&client, "no answer came within 500ms over the network"),
+            _ => {
+                let server = start(&programs, "server");
+                programs.until(&client, "has rested");
+                programs.until(&client, "made 1 calls, 1 were answered");
+                programs.ends(&client, 0);
+                programs.stop(&server);
+            }
+        }
+        programs.until(&client, &format!("made 1 calls, {answered} were answered"));
+        programs.stop(&client);
+        programs.end(&broker);
+    }
+}
+
+#[test]
 fn programs_with_different_interfaces_say_so_with_both_ends() {
     let programs = Programs::new();
     write_fleet(&programs, "calls.Caller", &[("calls", "1")]);

@@ -19,7 +19,7 @@ use crate::schedule::networks::{NO_NETWORK, interface_hash};
 use crate::schedule::settings::nanos;
 use crate::schedule::shared::Shared;
 
-/// Time within which a call is answered that its caller waits for.
+/// Time within which a call is answered that its caller waits for, unless the composite gives it.
 const DEADLINE: Duration = Duration::from_secs(3);
 /// Time after which who waits looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -45,6 +45,8 @@ struct Line {
     port: Arc<Port>,
     /// What all calls have in common.
     call: OwnCall,
+    /// Time within which a call is answered that its caller waits for.
+    deadline: Duration,
     /// Calls of a proxy whose outcome is not known.
     tickets: BTreeMap<u64, Arc<Ticket>>,
     last: u64,
@@ -85,6 +87,7 @@ impl Remotes {
                 let line = Line {
                     port,
                     call: own_call(&caller.spec, caller.index, (wire, target), handle),
+                    deadline: wire.deadline.unwrap_or(DEADLINE),
                     tickets: BTreeMap::new(),
                     last: 0,
                     is_ending: false,
@@ -133,9 +136,10 @@ impl Line {
 
     fn call_and_wait(&self, caller: &Part, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         let (operation, arguments) = (call.operation(), call.arguments());
-        let ticket = self.put(OwnCall { operation, arguments, deadline: Some(nanos(DEADLINE)), ..self.call.clone() });
+        let ticket =
+            self.put(OwnCall { operation, arguments, deadline: Some(nanos(self.deadline)), ..self.call.clone() });
         // The thread of the network ends it in time, unless that is held up.
-        let longest = Instant::now() + 2 * DEADLINE;
+        let longest = Instant::now() + self.deadline.saturating_mul(2);
         let outcome = loop {
             match ticket.wait(LOOK) {
                 Some(outcome) => break outcome,
@@ -145,7 +149,7 @@ impl Line {
             }
         };
         let url = caller.spec.url().unwrap_or_default();
-        let within = || format!("no answer came within {} over the network `{url}`", format_duration(DEADLINE));
+        let within = || format!("no answer came within {} over the network `{url}`", format_duration(self.deadline));
         match outcome {
             Outcome::Reply { bytes, .. } => call.reply(&bytes),
             Outcome::Refused { error, .. } => Err(error),

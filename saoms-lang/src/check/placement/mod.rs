@@ -28,6 +28,7 @@ pub(crate) fn check(
     let nodes: BTreeSet<&str> =
         running(fleet).map(|member| member.node.as_str()).filter(|one| !one.is_empty()).collect();
     wanted(&nodes, options, report);
+    wires::unused_deadlines(fleet, wiring, report);
     if nodes.is_empty() {
         return;
     }

@@ -1,6 +1,7 @@
 //! Rule: a wire between nodes is one over which components can call.
 
 use saoms_api::extension::RemoteProxy;
+use saoms_api::host::format_duration;
 
 use super::place;
 use crate::check::component::ComponentCheck;
@@ -43,6 +44,38 @@ pub(super) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], wiring: &W
         }
     }
     report.about_all();
+}
+
+/// Reports deadlines of references through which no call waits for another node.
+pub(super) fn unused_deadlines(fleet: &Fleet<'_>, wiring: &Wiring, report: &mut Report<'_>) {
+    for (caller, member) in fleet.members.iter().enumerate() {
+        for written in &member.component.references {
+            let Some(deadline) = &written.deadline else { continue };
+            let Some(why) = no_wait(fleet, wiring, caller, &written.name) else { continue };
+            report.about(member);
+            let message = format!("the deadline of {} has no effect: {why}", format_duration(deadline.value));
+            let one = Diagnostic::new(&codes::CALL_DEADLINE_UNUSED, deadline.location, message);
+            report.push(one.help("remove it, or give it to the reference of the component that calls another node"));
+        }
+    }
+    report.about_all();
+}
+
+/// Why no call through a reference of a component waits for another node; `None` where one does, or where what is wrong
+/// with the reference is told.
+fn no_wait(fleet: &Fleet<'_>, wiring: &Wiring, caller: usize, reference: &str) -> Option<String> {
+    let member = &fleet.members[caller];
+    let Some(class) = fleet.class_of(caller) else {
+        return (!member.runs()).then(|| "the component is a composite, and makes no calls itself".to_owned());
+    };
+    let (declared, targets) = class.references.iter().zip(&wiring[caller]).find(|(one, _)| one.name == reference)?;
+    let targets = targets.as_ref().filter(|targets| !targets.is_empty())?;
+    if RemoteProxy::of(&declared.interface.name).is_some() {
+        return Some(format!("calls of {} wait for no answer", quoted(&declared.interface.name)));
+    }
+    let is_here = |provider: &Provider| fleet.members[provider.member].node == member.node;
+    let are_here = targets.iter().all(is_here);
+    are_here.then(|| format!("the reference {} leads to no component of another node", quoted(reference)))
 }
 
 /// Why a component cannot call one of another node, and what to do.

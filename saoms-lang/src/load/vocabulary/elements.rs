@@ -245,11 +245,12 @@ attributes! {
     ALERT_COMMAND = known "alertCommand" Text: "The command of the shell that is run for each change of an alert, in the folder of the composite; it reads the change as JSON. `saoms run` runs it with `--alerts` alone.";
     HANGUP = known "hangup" Hangup: "What a lost terminal (SIGHUP) leads to: `end`, the default, ends the run; `hold` stops all that moves until it is released, as `saoms estop` does; `goOn` changes nothing. SIGTERM always ends the run.";
     LOST_LINK = known "lostLink" Hangup: "What a lost link to the other programs of a network leads to: `goOn`, the default, changes nothing; `hold` stops all that moves in this program until it is released, as `saoms estop` does; `end` ends the run.";
+    DEADLINE = known "deadline" Duration: "The time within which a call of a component of another node has to be answered, such as `10s` or `500ms`; the default is 3 s. The call fails if it is not. A number without a unit is milliseconds.";
     DEFAULT_NODE = known "defaultNode" Text: "The node of the components that are in no other one (`saoms:node`).";
 }
 
 /// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that
-/// of a composite.
+/// of a composite, `component/reference` that of a component.
 pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("composite", ALERT_URL),
     ("composite", ALERT_TOKEN_ENV),
@@ -267,6 +268,7 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("include", IF),
     ("wire", IF),
     ("composite/property", ENV),
+    ("component/reference", DEADLINE),
 ];
 
 /// The elements that SAOMS adds in its own namespace.

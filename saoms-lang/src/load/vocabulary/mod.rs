@@ -154,6 +154,8 @@ pub enum Holds {
     Number,
     /// An expression that comes to true or false, as `robots > 10`.
     Condition,
+    /// A duration, as `500ms`.
+    Duration,
     /// The name of an environment variable.
     Variable,
     /// The code of a diagnostic, such as `S4001`.
@@ -222,7 +224,11 @@ pub fn other(name: &str) -> Option<&'static str> {
 
 /// The attributes that SAOMS adds to an element.
 pub fn own_attributes(kind: &'static Kind) -> impl Iterator<Item = &'static Known> {
-    let place = if std::ptr::eq(kind, &COMPOSITE_PROPERTY) { "composite/property" } else { kind.name };
+    let place = match kind {
+        _ if std::ptr::eq(kind, &COMPOSITE_PROPERTY) => "composite/property",
+        _ if std::ptr::eq(kind, &COMPONENT_REFERENCE) => "component/reference",
+        _ => kind.name,
+    };
     OWN_ATTRIBUTES.iter().filter(move |(of, _)| *of == place).map(|(_, known)| known)
 }
 

@@ -1,5 +1,7 @@
 //! Nodes of a fleet, text in, text out.
 
+use std::time::Duration;
+
 use saoms_lang::assembly::Assembly;
 use saoms_lang::project::Project;
 use saoms_tools::expand::expanded;
@@ -114,6 +116,33 @@ fn a_part_knows_the_services_of_other_nodes_that_it_calls() {
     }
     // In one program it is a wire as any other.
     assert_eq!(assembly.unwrap().calls_over("localhost:61616").count(), 0);
+}
+
+#[test]
+fn a_reference_gives_its_calls_of_other_nodes_a_deadline() {
+    let given = |deadline: &str, node: &str| {
+        let outer = surveyor("localhost:61616", "") + &gps("Gps", node);
+        outer.replace("target=\"Gps\"", &format!("target=\"Gps\" s:deadline=\"{deadline}\""))
+    };
+    let (assembly, told) = surveyed(&given("1min", ""));
+    assert_eq!(told, "");
+    assert_eq!(assembly.unwrap().components[0].references[0].deadline, Some(Duration::from_mins(1)));
+    let project = Project::new().in_memory().text("fleet.composite", part("fleet", DEFAULT, &given("1min", "")));
+    let alone = expanded(&project.compile(&with_surveyor())).unwrap();
+    assert!(alone.contains("s:deadline=\"60s\""), "{alone}");
+    let unused = surveyed(&given("1min", "s:node=\"gate\"")).1;
+    let expected =
+        "warning S2066: the deadline of 60s has no effect: the reference `gps` leads to no component of another node";
+    assert!(unused.contains(expected), "{unused}");
+    for (wrong, why) in [
+        ("0", "no call is answered within no time"),
+        ("soon", "`soon` is not a duration: expected a number of milliseconds"),
+        ("-1s", "`-1s` is negative"),
+        ("", "is empty"),
+    ] {
+        let told = surveyed(&given(wrong, "")).1;
+        assert!(told.contains("`s:deadline`") && told.contains(why), "{wrong}: {told}");
+    }
 }
 
 #[test]

@@ -152,7 +152,7 @@ fn value_of(scene: &Scene, element: ElementId, name: &str, value: Range<usize>, 
         Holds::Name if is_of(&COMPOSITE_SERVICE) || is_of(&COMPOSITE_REFERENCE) => {
             names::promoted(scene, element, &value)
         }
-        Holds::Name | Holds::Uri | Holds::Names | Holds::Text => Vec::new(),
+        Holds::Name | Holds::Uri | Holds::Names | Holds::Duration | Holds::Text => Vec::new(),
     }
 }
 

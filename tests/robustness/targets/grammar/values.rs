@@ -81,6 +81,7 @@ pub(super) fn held(choices: &mut Choices<'_>, holds: Holds, registry: &Registry)
         Holds::Names => choices.of(&["t:a", "t:a o:b", "a", "zz:a"]).to_owned(),
         Holds::Number => expression::number(choices, 3),
         Holds::Condition => expression::condition(choices, 3),
+        Holds::Duration => choices.of(&["500ms", "100", "1s", "0", "-1s", "soon"]).to_owned(),
         Holds::Variable => choices.of(&["SAOMS_ROBUSTNESS", "HOME", "9", "A=B"]).to_owned(),
         Holds::Code => codes::ALL[choices.below(codes::ALL.len())].id.to_owned(),
         Holds::Level => SeverityLevel::ALL[choices.below(SeverityLevel::ALL.len())].name().to_owned(),
