@@ -1,39 +1,34 @@
 //! The state of a program's part of a network.
 
+mod actions;
+mod frames;
+
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use saoms_api::Level;
-use saoms_api::host::{cdr, shown};
+use saoms_api::host::cdr;
 
-use super::super::control::{Answer, Ask, Asked, Other, Requests};
+use super::super::control::{Other, Requests};
 use super::super::exchange;
 use super::super::exchange::call::Outcome;
-use super::super::exchange::{Action, Destination, Exchange, Keys, News, OwnMessage, Settings};
+use super::super::exchange::{Exchange, Keys, OwnMessage, Settings};
 use super::super::fleet::{Fleet, FromNetwork, Membership};
-use super::super::port::{Frame, FromRun, Port, Waiting};
-use super::super::rights::{Granted, Rights};
+use super::super::port::{FromRun, Port, Waiting};
+use super::super::rights::Rights;
 use super::super::ticket::Ticket;
-use super::super::told::told;
 use super::super::transport::{Delivered, TransportSession};
 use super::super::{FROM_OUTSIDE, key};
+use super::FIRST_OF_TOPICS;
 use super::link::Link;
-use super::{ACCESS, ALIVE, ASK, CALL, CONTROL, COVERED, FIRST_OF_TOPICS, LOOK, REPLY};
 
-/// Versions of other programs that are told, at most.
-const MOST_VERSIONS: usize = 8;
 /// Longest time between two looks at what is due, in nanoseconds.
 const LONGEST_PAUSE: u64 = 200_000_000;
 /// Time after which messages are offered again for which the fleet had no room.
 const ROOM_AGAIN: Duration = Duration::from_millis(1);
-/// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
-/// they have.
-const MOST_UNDELIVERED: usize = 4_096;
 /// Messages of components after which the network gets what they say, at most.
 const MOST_AT_ONCE: usize = 1_024;
-/// The kind of alerts of programs that give no sign of life.
-const UNREACHABLE: &str = "unreachable";
 /// Time from one word of a router about rights to the next.
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 
@@ -321,199 +316,6 @@ impl<F: Fleet> Member<F> {
                     number,
                     bytes: message.bytes(),
                 });
-            }
-        }
-    }
-
-    fn take_frame(&mut self, frame: &Frame, now: u64) {
-        // What is not what it should be comes from somebody who speaks another language: it is nothing to this program.
-        match frame.token {
-            ALIVE if key::version(&frame.key) != Some(key::VERSION) => {
-                let version = key::version(&frame.key).unwrap_or_default().to_owned();
-                if self.others.len() < MOST_VERSIONS && self.others.insert(version.clone()) {
-                    let text = format!(
-                        "a program on the network `{}` speaks version {} of its language, and this one version {}: they do \
-                         not hear each other; build both from one version",
-                        self.membership.url,
-                        shown(version.as_bytes()),
-                        key::VERSION
-                    );
-                    self.fleet.tell(Level::Error, text);
-                }
-            }
-            ACCESS => {
-                let Some((rights, granted)) = self.rights.as_mut().zip(cdr::decode::<Granted>(&frame.message).ok())
-                else {
-                    return;
-                };
-                let membership = &self.membership;
-                let told = rights.hear(&granted, |topic| membership.readers(topic));
-                told.into_iter().for_each(|text| self.fleet.tell(Level::Error, text));
-            }
-            ALIVE => {
-                if let Ok(alive) = cdr::decode(&frame.message) {
-                    self.exchange.hear(&alive, now);
-                }
-            }
-            ASK => {
-                if let Ok(again) = cdr::decode(&frame.message) {
-                    self.exchange.answer(&again);
-                }
-            }
-            COVERED => {
-                if let Ok(covered) = cdr::decode(&frame.message) {
-                    self.exchange.cover(&covered, now);
-                }
-            }
-            CALL => {
-                if let Ok(request) = cdr::decode(&frame.message) {
-                    self.exchange.take_request(request, now);
-                }
-            }
-            REPLY => {
-                if let Ok(reply) = cdr::decode(&frame.message) {
-                    self.exchange.take_reply(reply, now);
-                }
-            }
-            CONTROL => {
-                let Ok(ask) = cdr::decode::<Ask>(&frame.message) else { return };
-                let asker = ask.asker;
-                match self.requests.take(ask, self.program, &self.port, now) {
-                    None => {}
-                    Some(Asked::New(request, reply)) => self.fleet.control(request, reply),
-                    Some(Asked::Again(answers)) => {
-                        answers.iter().for_each(|answer| self.put_answer(asker, answer));
-                    }
-                }
-            }
-            LOOK => {
-                if let Ok(look) = cdr::decode(&frame.message) {
-                    self.exchange.show(&look);
-                }
-            }
-            FIRST_OF_TOPICS.. => {
-                let Frame { token, key, message, attachment } = frame;
-                self.take_messages(&Delivered { token: *token, key, message, attachment }, now);
-            }
-            _ => {}
-        }
-        self.carry_out();
-    }
-
-    /// Takes messages of a topic. True if some before them are missing.
-    fn take_messages(&mut self, delivered: &Delivered<'_>, now: u64) -> bool {
-        // Senders keep what is dropped here, and send it again.
-        if self.undelivered.len() > MOST_UNDELIVERED {
-            return false;
-        }
-        let topic = |place| delivered.key.split('/').nth(place).and_then(key::name);
-        let topic = match delivered.key.split('/').nth(2) {
-            Some("topic") => topic(3),
-            Some("again") => topic(4),
-            _ => return cdr::decode(delivered.message).is_ok_and(|around| self.exchange.see(around, now)),
-        };
-        topic.is_some_and(|topic| self.exchange.receive(&topic, delivered.message, delivered.attachment, now))
-    }
-
-    fn carry_out(&mut self) {
-        while let Some((key, bytes, envelope)) = self.unsent.pop_front() {
-            if !self.put(&key, &bytes, envelope.as_deref()) {
-                self.unsent.push_front((key, bytes, envelope));
-                break;
-            }
-        }
-        self.act();
-    }
-
-    /// Does what the exchange wants.
-    fn act(&mut self) {
-        for action in self.exchange.take_actions() {
-            match action {
-                Action::Subscribe(keys) => self.subscribe(keys),
-                Action::Unsubscribe(keys) => self.unsubscribe(&keys),
-                Action::Put { to, bytes } => self.put_or_keep(&to, bytes, None),
-                Action::Send { to, frame } => {
-                    let (bytes, envelope) = frame.encode();
-                    self.put_or_keep(&to, bytes, Some(envelope));
-                }
-                Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
-                Action::Serve(request) => self.fleet.serve(request),
-                Action::Answered { line, number, outcome } => {
-                    if let Some(ticket) = self.tickets.remove(&(line, number)) {
-                        ticket.fill(outcome);
-                    }
-                }
-                Action::Remember(changes) => self.fleet.remember(changes),
-                Action::Tell(news) => {
-                    if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
-                        self.fleet.misses(name);
-                    }
-                    let (level, text) = told(&news);
-                    match &news {
-                        News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
-                        News::Back { name, .. } | News::GoesOn { name, .. } | News::Left { name, .. } => {
-                            self.fleet.alert(UNREACHABLE, name, None);
-                            self.fleet.tell(level, text);
-                        }
-                        _ => self.fleet.tell(level, text),
-                    }
-                }
-            }
-        }
-    }
-
-    fn subscribe(&mut self, keys: Keys) {
-        let Some(session) = &self.session else { return };
-        let token = self.next_token;
-        self.next_token += 1;
-        if let Err(error) = session.subscribe(&key::asked(&keys, self.program), token) {
-            let text = format!("topic `{}` cannot be read from the network: {error}", keys.topic());
-            self.fleet.tell(Level::Error, text);
-        }
-        self.tokens.insert(keys, token);
-    }
-
-    fn unsubscribe(&mut self, keys: &Keys) {
-        let Some(session) = &self.session else { return };
-        if let Some(token) = self.tokens.remove(keys)
-            && let Err(error) = session.unsubscribe(token)
-        {
-            // It goes on to hear what it does not need.
-            self.fleet.tell(Level::Warning, format!("topic `{}` is read still: {error}", keys.topic()));
-        }
-    }
-
-    fn put_or_keep(&mut self, to: &Destination, bytes: Arc<[u8]>, envelope: Option<Arc<[u8]>>) {
-        let key = match to {
-            Destination::Topic(topic, component, cell) => key::topic(topic, component, *cell),
-            Destination::Again(program, topic) => key::again(*program, topic),
-            Destination::Alive(program) => key::alive(*program),
-            Destination::Ask(program) => key::ask(*program),
-            Destination::Covered(program) => key::covered(*program),
-            Destination::Look(program) => key::look(*program),
-            Destination::Around(program, topic) => key::around(*program, topic),
-            Destination::Call(program) => key::call(*program),
-            Destination::Reply(program) => key::reply(*program),
-        };
-        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
-            self.unsent.push_back((key, bytes, envelope));
-        }
-    }
-
-    fn put_answer(&self, asker: u64, answer: &Answer) {
-        // It is asked for again if there is no room for it.
-        self.put(&key::controlled(asker), &cdr::encode(answer), None);
-    }
-
-    /// Puts something on the network; false if there is no room for it.
-    fn put(&self, key: &str, bytes: &[u8], envelope: Option<&[u8]>) -> bool {
-        let Some(session) = &self.session else { return true };
-        match session.put(key, bytes, envelope.unwrap_or_default(), envelope.is_none()) {
-            Ok(is_put) => is_put,
-            // It is sent again when somebody lacks it.
-            Err(error) => {
-                self.fleet.tell(Level::Warning, format!("the network did not take `{key}`: {error}"));
-                true
             }
         }
     }

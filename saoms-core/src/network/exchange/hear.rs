@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::action::{Action, News};
+use super::again::note_missing;
 use super::cells::Cells;
 use super::outgoing::Outgoing;
 use super::peer::{Peer, Reading};
 use super::wire::{Alive, LARGEST_NUMBER, Reads, Received, Sends, Vote, Welcome};
-use super::{Exchange, MILLISECOND, look, note_missing};
+use super::{Exchange, MILLISECOND, look};
 
 /// Programs that are known at once, and topics of one of them, at most: more is no fleet.
 const MOST_PROGRAMS: usize = 4_096;

@@ -13,9 +13,11 @@
 //! - A [call] of a component of another program runs at most once.
 
 mod action;
+mod again;
 mod around;
 pub mod call;
 mod cells;
+mod ending;
 mod frame;
 mod hear;
 mod incoming;
@@ -34,18 +36,18 @@ use std::sync::Arc;
 use saoms_api::host::cdr;
 
 pub use self::action::{Action, Destination, Keys, News, OwnMessage, Settings};
+use self::again::note_missing;
 use self::call::Line;
 use self::frame::ArrivedFrame;
 pub use self::frame::Frame;
 pub use self::incoming::Arrived;
-use self::incoming::Incoming;
 use self::look::WantedCells;
 use self::memory::Past;
 pub use self::memory::{Delivered, KeptEvent, KnownReader, Memory, Remembered};
 use self::outgoing::{Kept, Outgoing, Sent};
 use self::owners::Owner;
 use self::peer::Peer;
-use self::wire::{Again, Alive, Covered, Vote};
+use self::wire::{Alive, Vote};
 use crate::bus::cell_of;
 
 /// Nanoseconds of a millisecond.
@@ -56,10 +58,6 @@ const BUSY_INTERVAL: [u64; 2] = [100 * MILLISECOND, 250 * MILLISECOND];
 const LATENESS: u64 = 20 * MILLISECOND;
 /// Longest time between two requests for the same messages.
 const LONGEST_WAIT: u64 = 1_000 * MILLISECOND;
-/// Messages that are sent again for one request, at most.
-const MOST_AGAIN: usize = 1_024;
-/// Bytes that are sent again for one request, at most, beside the last message.
-const MOST_AGAIN_BYTES: usize = 1 << 20;
 
 /// A topic that components of this program read.
 #[derive(Clone, Debug)]
@@ -250,40 +248,6 @@ impl Exchange {
         is_missing
     }
 
-    /// Another program asks for messages again.
-    pub fn answer(&mut self, again: &Again) {
-        let Some((topic, outgoing)) = self.outgoing.get_key_value(again.topic.as_str()) else { return };
-        let (topic, is_state, newest) = (Arc::clone(topic), outgoing.is_state(), outgoing.last);
-        let (mut size, mut last) = (0, again.last);
-        let mut found = Vec::new();
-        for sent in outgoing.between(again.first, again.last) {
-            if found.len() == MOST_AGAIN || size > MOST_AGAIN_BYTES {
-                last = sent.number - 1;
-                break;
-            }
-            size += sent.bytes.len();
-            found.push(sent.clone());
-        }
-        let numbers = found.iter().map(|sent| sent.number).collect();
-        for sent in found {
-            self.put_message(Destination::Again(again.reader, Arc::clone(&topic)), is_state, sent);
-        }
-        if is_state {
-            let (program, last) = (self.settings.program, last.min(newest));
-            let covered = Covered { program, topic: topic.to_string(), first: again.first, last, numbers };
-            let to = Destination::Covered(again.reader);
-            self.actions.push(Action::Put { to, bytes: cdr::encode(&covered).into() });
-        }
-    }
-
-    /// Another program says which messages of a state topic are outdated.
-    pub fn cover(&mut self, covered: &Covered, now: u64) {
-        let peer = self.peers.get_mut(&covered.program);
-        let Some(incoming) = peer.and_then(|peer| peer.incoming.get_mut(covered.topic.as_str())) else { return };
-        incoming.skip_outdated(covered);
-        note_missing(incoming, now);
-    }
-
     /// Does what is due. Gives the time at which something is due next.
     pub fn tick(&mut self, now: u64) -> u64 {
         self.pass(now);
@@ -302,69 +266,6 @@ impl Exchange {
         }
         self.pursue_calls();
         next.min(self.sign_at).min(self.calls_at)
-    }
-
-    /// True if all other programs have received all events of this one, but for those that were missed for long.
-    pub fn is_complete(&self) -> bool {
-        self.lacking().all(|(peer, ..)| !peer.is_awaited(self.now))
-    }
-
-    /// The programs that lack events of this one, with the topic and the number of these.
-    fn lacking(&self) -> impl Iterator<Item = (&Peer, &Arc<str>, u64)> {
-        let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
-        events.flat_map(|(topic, outgoing)| {
-            let needed = move |peer: &Peer| peer.needs(topic).filter(|next| *next <= outgoing.last);
-            self.peers.values().filter_map(move |peer| Some((peer, topic, outgoing.last + 1 - needed(peer)?)))
-        })
-    }
-
-    /// Says whether the program sees work left.
-    pub fn vote(&mut self, vote: Vote) {
-        if std::mem::replace(&mut self.vote, vote) != vote {
-            self.say_soon();
-        }
-    }
-
-    /// The programs that no work can be done without, and that were never there, if nothing else is left to do.
-    pub fn waits_for(&self) -> Option<&BTreeSet<String>> {
-        Some(&self.unheard).filter(|unheard| !unheard.is_empty() && self.is_agreed())
-    }
-
-    /// True if some program has seen that all work is done, no program that is there sees work left, and all that the
-    /// fleet needs have been there.
-    pub fn is_done(&self) -> bool {
-        self.unheard.is_empty() && self.is_agreed()
-    }
-
-    fn is_agreed(&self) -> bool {
-        // Who said that all is done, and vanished, has said so: its last sign of life may be lost.
-        let counts = |peer: &&Peer| peer.is_reachable || peer.vote == Vote::Done;
-        let there = self.peers.values().filter(counts).map(|peer| peer.vote);
-        let mut is_done = self.was_done;
-        for vote in there.chain([self.vote]) {
-            match vote {
-                Vote::Silent => {}
-                Vote::Open => return false,
-                Vote::Done => is_done = true,
-            }
-        }
-        is_done
-    }
-
-    /// The program leaves the network.
-    pub fn leave(&mut self) {
-        let unreceived = self.lacking().map(|(peer, topic, count)| {
-            let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
-            Action::Tell(match self.settings.memory {
-                Some(_) => News::Later { name, topic, count },
-                None => News::Unreceived { name, topic, count },
-            })
-        });
-        let unreceived: Vec<Action> = unreceived.collect();
-        self.actions.extend(unreceived);
-        self.remember();
-        let alive = self.sign_of_life(true);
-        self.put_alive(&alive);
     }
 
     /// Bytes of messages that are kept for other programs.
@@ -443,35 +344,6 @@ impl Exchange {
         }
     }
 
-    /// Asks for what is missing. Gives the time at which that is due next.
-    fn ask(&mut self, now: u64) -> u64 {
-        let mut next = u64::MAX;
-        for (program, peer) in self.peers.iter_mut().filter(|(_, peer)| peer.is_reachable) {
-            for (topic, incoming) in &mut peer.incoming {
-                let Some(at) = incoming.ask_at else { continue };
-                if at > now {
-                    next = next.min(at);
-                    continue;
-                }
-                let Some((first, last)) = incoming.missing() else {
-                    incoming.ask_at = None;
-                    continue;
-                };
-                // A part at a time: who is asked for all again and again has no time for what is new.
-                let last = last.min(first + MOST_AGAIN as u64 - 1);
-                incoming.asked_up_to = last;
-                let again = Again { reader: self.settings.program, topic: topic.to_string(), first, last };
-                let (to, bytes) = (Destination::Ask(*program), cdr::encode(&again).into());
-                self.actions.push(Action::Put { to, bytes });
-                let wait = ((2 * LATENESS) << incoming.asked.min(10)).min(LONGEST_WAIT);
-                incoming.asked += 1;
-                incoming.ask_at = Some(now + wait);
-                next = next.min(now + wait);
-            }
-        }
-        next
-    }
-
     fn put_alive(&mut self, alive: &Alive) {
         let bytes = cdr::encode(alive).into();
         self.actions.push(Action::Put { to: Destination::Alive(self.settings.program), bytes });
@@ -515,20 +387,5 @@ impl Exchange {
                 return;
             }
         }
-    }
-}
-
-/// Asks soon for what is missing. While what was asked for arrives, it is waited for; then the next part is asked for.
-fn note_missing(incoming: &mut Incoming, now: u64) {
-    let before = std::mem::replace(&mut incoming.seen, incoming.next);
-    if incoming.missing().is_none() {
-        incoming.ask_at = None;
-    } else if incoming.ask_at.is_none() {
-        (incoming.asked, incoming.asked_up_to) = (0, 0);
-        incoming.ask_at = Some(now + LATENESS);
-    } else if incoming.next > before && incoming.asked_up_to > 0 {
-        incoming.asked = 0;
-        let is_over = incoming.next > incoming.asked_up_to;
-        incoming.ask_at = Some(if is_over { now } else { now + 2 * LATENESS });
     }
 }

@@ -1,0 +1,120 @@
+//! What the exchange wants, carried out.
+
+use std::sync::Arc;
+
+use saoms_api::Level;
+use saoms_api::host::cdr;
+
+use super::Member;
+use crate::network::control::Answer;
+use crate::network::exchange::{Action, Destination, Keys, News};
+use crate::network::told::told;
+use crate::network::{Fleet, FromNetwork, key};
+
+/// The kind of alerts of programs that give no sign of life.
+const UNREACHABLE: &str = "unreachable";
+
+impl<F: Fleet> Member<F> {
+    pub(super) fn carry_out(&mut self) {
+        while let Some((key, bytes, envelope)) = self.unsent.pop_front() {
+            if !self.put(&key, &bytes, envelope.as_deref()) {
+                self.unsent.push_front((key, bytes, envelope));
+                break;
+            }
+        }
+        self.act();
+    }
+
+    /// Does what the exchange wants.
+    pub(super) fn act(&mut self) {
+        for action in self.exchange.take_actions() {
+            match action {
+                Action::Subscribe(keys) => self.subscribe(keys),
+                Action::Unsubscribe(keys) => self.unsubscribe(&keys),
+                Action::Put { to, bytes } => self.put_or_keep(&to, bytes, None),
+                Action::Send { to, frame } => {
+                    let (bytes, envelope) = frame.encode();
+                    self.put_or_keep(&to, bytes, Some(envelope));
+                }
+                Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
+                Action::Serve(request) => self.fleet.serve(request),
+                Action::Answered { line, number, outcome } => {
+                    if let Some(ticket) = self.tickets.remove(&(line, number)) {
+                        ticket.fill(outcome);
+                    }
+                }
+                Action::Remember(changes) => self.fleet.remember(changes),
+                Action::Tell(news) => {
+                    if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
+                        self.fleet.misses(name);
+                    }
+                    let (level, text) = told(&news);
+                    match &news {
+                        News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
+                        News::Back { name, .. } | News::GoesOn { name, .. } | News::Left { name, .. } => {
+                            self.fleet.alert(UNREACHABLE, name, None);
+                            self.fleet.tell(level, text);
+                        }
+                        _ => self.fleet.tell(level, text),
+                    }
+                }
+            }
+        }
+    }
+
+    fn subscribe(&mut self, keys: Keys) {
+        let Some(session) = &self.session else { return };
+        let token = self.next_token;
+        self.next_token += 1;
+        if let Err(error) = session.subscribe(&key::asked(&keys, self.program), token) {
+            let text = format!("topic `{}` cannot be read from the network: {error}", keys.topic());
+            self.fleet.tell(Level::Error, text);
+        }
+        self.tokens.insert(keys, token);
+    }
+
+    fn unsubscribe(&mut self, keys: &Keys) {
+        let Some(session) = &self.session else { return };
+        if let Some(token) = self.tokens.remove(keys)
+            && let Err(error) = session.unsubscribe(token)
+        {
+            // It goes on to hear what it does not need.
+            self.fleet.tell(Level::Warning, format!("topic `{}` is read still: {error}", keys.topic()));
+        }
+    }
+
+    fn put_or_keep(&mut self, to: &Destination, bytes: Arc<[u8]>, envelope: Option<Arc<[u8]>>) {
+        let key = match to {
+            Destination::Topic(topic, component, cell) => key::topic(topic, component, *cell),
+            Destination::Again(program, topic) => key::again(*program, topic),
+            Destination::Alive(program) => key::alive(*program),
+            Destination::Ask(program) => key::ask(*program),
+            Destination::Covered(program) => key::covered(*program),
+            Destination::Look(program) => key::look(*program),
+            Destination::Around(program, topic) => key::around(*program, topic),
+            Destination::Call(program) => key::call(*program),
+            Destination::Reply(program) => key::reply(*program),
+        };
+        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
+            self.unsent.push_back((key, bytes, envelope));
+        }
+    }
+
+    pub(super) fn put_answer(&self, asker: u64, answer: &Answer) {
+        // It is asked for again if there is no room for it.
+        self.put(&key::controlled(asker), &cdr::encode(answer), None);
+    }
+
+    /// Puts something on the network; false if there is no room for it.
+    pub(super) fn put(&self, key: &str, bytes: &[u8], envelope: Option<&[u8]>) -> bool {
+        let Some(session) = &self.session else { return true };
+        match session.put(key, bytes, envelope.unwrap_or_default(), envelope.is_none()) {
+            Ok(is_put) => is_put,
+            // It is sent again when somebody lacks it.
+            Err(error) => {
+                self.fleet.tell(Level::Warning, format!("the network did not take `{key}`: {error}"));
+                true
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! When the programs of a network agree that no work is left, and how one leaves.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::peer::Peer;
+use super::wire::Vote;
+use super::{Action, Exchange, News};
+
+impl Exchange {
+    /// True if all other programs have received all events of this one, but for those that were missed for long.
+    pub fn is_complete(&self) -> bool {
+        self.lacking().all(|(peer, ..)| !peer.is_awaited(self.now))
+    }
+
+    /// The programs that lack events of this one, with the topic and the number of these.
+    fn lacking(&self) -> impl Iterator<Item = (&Peer, &Arc<str>, u64)> {
+        let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
+        events.flat_map(|(topic, outgoing)| {
+            let needed = move |peer: &Peer| peer.needs(topic).filter(|next| *next <= outgoing.last);
+            self.peers.values().filter_map(move |peer| Some((peer, topic, outgoing.last + 1 - needed(peer)?)))
+        })
+    }
+
+    /// Says whether the program sees work left.
+    pub fn vote(&mut self, vote: Vote) {
+        if std::mem::replace(&mut self.vote, vote) != vote {
+            self.say_soon();
+        }
+    }
+
+    /// The programs that no work can be done without, and that were never there, if nothing else is left to do.
+    pub fn waits_for(&self) -> Option<&BTreeSet<String>> {
+        Some(&self.unheard).filter(|unheard| !unheard.is_empty() && self.is_agreed())
+    }
+
+    /// True if some program has seen that all work is done, no program that is there sees work left, and all that the
+    /// fleet needs have been there.
+    pub fn is_done(&self) -> bool {
+        self.unheard.is_empty() && self.is_agreed()
+    }
+
+    fn is_agreed(&self) -> bool {
+        // Who said that all is done, and vanished, has said so: its last sign of life may be lost.
+        let counts = |peer: &&Peer| peer.is_reachable || peer.vote == Vote::Done;
+        let there = self.peers.values().filter(counts).map(|peer| peer.vote);
+        let mut is_done = self.was_done;
+        for vote in there.chain([self.vote]) {
+            match vote {
+                Vote::Silent => {}
+                Vote::Open => return false,
+                Vote::Done => is_done = true,
+            }
+        }
+        is_done
+    }
+
+    /// The program leaves the network.
+    pub fn leave(&mut self) {
+        let unreceived = self.lacking().map(|(peer, topic, count)| {
+            let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
+            Action::Tell(match self.settings.memory {
+                Some(_) => News::Later { name, topic, count },
+                None => News::Unreceived { name, topic, count },
+            })
+        });
+        let unreceived: Vec<Action> = unreceived.collect();
+        self.actions.extend(unreceived);
+        self.remember();
+        let alive = self.sign_of_life(true);
+        self.put_alive(&alive);
+    }
+}
