@@ -61,9 +61,6 @@ pub struct Access {
     /// The nodes of the fleet that the user's programs run: they may read and publish the topics of the components
     /// there, and call those of other nodes where these are wired to them.
     pub runs: Vec<String>,
-    /// True if the components of these nodes call others, or are called. A router class leaves it at `false`: it
-    /// follows from `runs` and the composite.
-    pub calls: bool,
     /// True if the user may control the programs of the network.
     pub controls: bool,
 }
@@ -80,14 +77,6 @@ pub enum Topics {
 impl Default for Topics {
     fn default() -> Topics {
         Topics::Some(Vec::new())
-    }
-}
-
-impl Access {
-    /// True if the user's programs may call components of others, and answer their calls: they may read and publish
-    /// everything, or run a node that does so.
-    pub fn may_call(&self) -> bool {
-        self.calls || self.reads == Topics::All && self.writes == Topics::All
     }
 }
 

@@ -21,9 +21,10 @@
 
 use std::fmt::Write as _;
 
-use saoms_api::extension::{Access, Topics};
+use saoms_api::extension::Topics;
 
 use super::exchange::Keys;
+use super::rights::Grant;
 use super::transport::UserKeys;
 use crate::bus::Cell;
 
@@ -145,8 +146,8 @@ pub fn controlled(asker: u64) -> String {
     format!("{PREFIX}/controlled/{asker:x}")
 }
 
-/// The keys that a user with this access may use.
-pub fn of_user(access: &Access) -> UserKeys {
+/// The keys that a user may use who is granted this.
+pub fn of_user(Grant { access, calls: may_call }: &Grant) -> UserKeys {
     let names = |topics: &Topics| match topics {
         Topics::All => vec!["*".to_owned()],
         Topics::Some(names) => names.iter().map(|name| part(name)).collect(),
@@ -168,7 +169,7 @@ pub fn of_user(access: &Access) -> UserKeys {
     // A call can do anything, and an answer says what was done: both are for who may everything, and for the nodes
     // whose components call others.
     let calls = [format!("{PREFIX}/call/*"), format!("{PREFIX}/reply/*")];
-    if access.may_call() {
+    if *may_call {
         put.extend(calls.clone());
         subscribe.extend(calls);
     }

@@ -34,21 +34,40 @@ pub struct UserRights {
     pub controls: bool,
 }
 
+/// What a router lets a user do: what its class says of the user, with what the components of the nodes that the user
+/// runs do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Grant {
+    /// Topics and control, those of these components among them.
+    pub access: Access,
+    /// True if the programs of the user may call components of others, and answer their calls.
+    pub calls: bool,
+}
+
+impl Grant {
+    /// What a user may do with this access who runs nodes whose components call others, or are called, or who does not.
+    /// Who may read and publish everything may call, too.
+    pub fn new(access: Access, runs_calls: bool) -> Grant {
+        let calls = runs_calls || access.reads == Topics::All && access.writes == Topics::All;
+        Grant { access, calls }
+    }
+}
+
 impl Granted {
-    /// What a router with this access says.
-    pub fn of(access: &[Access]) -> Granted {
+    /// What a router says that grants this.
+    pub fn of(grants: &[Grant]) -> Granted {
         let names = |topics: &Topics| match topics {
             Topics::All => vec![ALL.to_owned()],
             Topics::Some(names) => names.clone(),
         };
-        let of_user = |one: &Access| UserRights {
-            user: one.user.clone(),
-            reads: names(&one.reads),
-            writes: names(&one.writes),
-            calls: one.may_call(),
-            controls: one.controls,
+        let of_user = |Grant { access, calls }: &Grant| UserRights {
+            user: access.user.clone(),
+            reads: names(&access.reads),
+            writes: names(&access.writes),
+            calls: *calls,
+            controls: access.controls,
         };
-        Granted { users: access.iter().map(of_user).collect() }
+        Granted { users: grants.iter().map(of_user).collect() }
     }
 }
 
@@ -157,7 +176,8 @@ mod tests {
     fn granted(reads: &[&str], writes: &[&str]) -> Granted {
         let topics = |names: &[&str]| Topics::Some(names.iter().map(|name| (*name).to_owned()).collect());
         let (reads, writes) = (topics(reads), topics(writes));
-        Granted::of(&[Access { user: "viewer".to_owned(), reads, writes, ..Access::default() }])
+        let access = Access { user: "viewer".to_owned(), reads, writes, ..Access::default() };
+        Granted::of(&[Grant::new(access, false)])
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::path::Path;
 use saoms_api::Secret;
 use saoms_api::extension::{Access, FailureNotice, Router, RouterClass, TlsPaths};
 use saoms_core::network::key;
+use saoms_core::network::rights::Grant;
 use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport, peers};
 use saoms_lang::assembly::{Assembly, ComponentSpec, RemoteTarget, TaskProperties};
 use saoms_lang::diagnostic::{Diagnostic, codes};
@@ -252,26 +253,24 @@ impl Resolver<'_> {
 }
 
 /// What a router lets each of its users do; nothing where all may do everything. Who is not named may do nothing.
-pub(super) fn granted(described: &Described, users: &[Account], assembly: &Assembly) -> Vec<Access> {
+pub(super) fn granted(described: &Described, users: &[Account], assembly: &Assembly) -> Vec<Grant> {
     let Some((_, router)) = described.router.as_ref().filter(|(_, router)| !router.access.is_empty()) else {
         return Vec::new();
     };
     let named = |user: &str| router.access.iter().find(|access| access.user == user).cloned();
     let of = |one: &Account| named(&one.user).unwrap_or_else(|| Access { user: one.user.clone(), ..Access::default() });
-    let mut all: Vec<Access> = users.iter().map(of).collect();
-    all.iter_mut().for_each(|access| allow_nodes(access, assembly, &router.url));
-    all
+    users.iter().map(|user| with_nodes(of(user), assembly, &router.url)).collect()
 }
 
-/// Lets a user do what the components of the nodes that it runs do on the network of a router.
-fn allow_nodes(access: &mut Access, assembly: &Assembly, router: &str) {
+/// Lets a user also do what the components of the nodes that it runs do on the network of a router.
+fn with_nodes(mut access: Access, assembly: &Assembly, router: &str) -> Grant {
     let runs: BTreeSet<&str> = access.runs.iter().map(String::as_str).collect();
     let on_network = || assembly.all().filter(|spec| spec.url().is_some_and(|url| leads_to(url, router)));
     let calls = on_network().flat_map(|spec| {
         let ends = spec.references.iter().flat_map(|wire| &wire.elsewhere);
         ends.flat_map(|end| [spec.node.as_str(), end.node.as_str()])
     });
-    access.calls |= calls.into_iter().any(|node| runs.contains(node));
+    let runs_calls = calls.into_iter().any(|node| runs.contains(node));
     for spec in on_network().filter(|spec| runs.contains(spec.node.as_str())) {
         spec.publishes().for_each(|topic| access.writes.add(&spec.topic(&topic.name)));
         spec.subscribes().for_each(|topic| access.reads.add(&spec.topic(&topic.name)));
@@ -279,6 +278,7 @@ fn allow_nodes(access: &mut Access, assembly: &Assembly, router: &str) {
         let is_about = |notice: &&FailureNotice| spec.publishes().any(|topic| topic.name == notice.about.name);
         FailureNotice::linked().filter(is_about).for_each(|notice| access.writes.add(&spec.topic(notice.topic.name)));
     }
+    Grant::new(access, runs_calls)
 }
 
 /// True if a url leads to a router: it is the address of the router, or has its port where the router listens at all
