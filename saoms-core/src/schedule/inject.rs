@@ -1,7 +1,10 @@
 //! Messages from outside the fleet.
 
+mod error;
+#[cfg(test)]
+mod tests;
+
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::Arc;
 
 use saoms_api::event::fault::FaultCall;
@@ -11,10 +14,10 @@ use saoms_lang::assembly::{ComponentSpec, fault_subjects};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
+pub use self::error::InjectError;
 use super::engine::{Engine, RunPhase};
 use super::order::PendingOrder;
 use super::shared::Shared;
-use super::topics::speakers::ForeignSpeaker;
 use super::topics::takers::{EventMessage, RaiseError};
 use crate::bus::{Bus, TopicId};
 use crate::fault::TimedFault;
@@ -60,61 +63,6 @@ pub enum InjectedContent {
     /// Its CDR form (see [`saoms_api::host::cdr`]).
     Bytes(Vec<u8>),
 }
-
-/// Error of a message from outside that was not accepted.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum InjectError {
-    /// The fleet has no such topic.
-    UnknownTopic {
-        /// The name that was given.
-        topic: String,
-        /// The most similar topic, if there is a similar one.
-        nearest: Option<String>,
-        /// All topics of the fleet.
-        known: Vec<String>,
-    },
-    /// The message does not fit the schema of the topic.
-    Content {
-        /// The topic.
-        topic: String,
-        /// The name of its messages.
-        message: String,
-        /// Found and expected content.
-        error: String,
-    },
-    /// It speaks in the name of a component of the fleet.
-    Speaker {
-        /// The topic.
-        topic: String,
-        /// The component, and what says so.
-        speaker: Box<ForeignSpeaker>,
-    },
-    /// The run ends.
-    Ending,
-}
-
-impl fmt::Display for InjectError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            InjectError::UnknownTopic { topic, nearest: Some(near), .. } => {
-                write!(formatter, "the fleet has no topic `{topic}`; did you mean `{near}`?")
-            }
-            InjectError::UnknownTopic { topic, known, .. } if known.is_empty() => {
-                write!(formatter, "the fleet has no topic `{topic}`: it has no topics")
-            }
-            InjectError::UnknownTopic { topic, known, .. } => {
-                write!(formatter, "the fleet has no topic `{topic}`; its topics are: {}", known.join(", "))
-            }
-            InjectError::Content { topic, message, error } => {
-                write!(formatter, "topic `{topic}`: this is not a message `{message}`: {error}")
-            }
-            InjectError::Speaker { topic, speaker } => write!(formatter, "topic `{topic}`: {speaker}"),
-            InjectError::Ending => formatter.write_str("the run ends"),
-        }
-    }
-}
-
-impl std::error::Error for InjectError {}
 
 /// Messages and orders that wait for their time, in the order in which they take effect: those from outside, and
 /// messages that a fault holds up.
@@ -212,22 +160,29 @@ impl Injections {
         self.add(when, Due::Late { topic, message });
     }
 
-    /// True if the next message that is due fits into the queues of its readers, or there is none.
-    fn has_room(&self, bus: &Bus, now: u64) -> bool {
-        match self.waiting.first_key_value().filter(|((when, _), _)| *when <= now) {
-            Some((_, Due::Message { topic, .. })) => bus.has_room(*topic),
-            Some((_, Due::Event { messages, .. })) => {
-                messages.iter().filter_map(|message| bus.find(&message.topic)).all(|topic| bus.has_room(topic))
+    /// Whether what is due next fits into the queues of its readers; `None` if nothing is due that takes room.
+    fn has_room(&self, bus: &Bus, now: u64) -> Option<bool> {
+        match self.waiting.first_key_value().filter(|((when, _), _)| *when <= now)?.1 {
+            Due::Message { topic, .. } => Some(bus.has_room(*topic)),
+            Due::Event { messages, .. } => {
+                let mut topics = messages.iter().filter_map(|message| bus.find(&message.topic));
+                Some(topics.all(|topic| bus.has_room(topic)))
             }
-            _ => true,
+            Due::Commit { .. } => None,
+            _ => Some(true),
         }
     }
 
-    /// Lets what is due wait until then, in its order.
+    /// Lets what is due wait until then, in its order, but for commits: they have an order of their own, in which what
+    /// waits for them leaves the program, and take no room.
     fn postpone(&mut self, now: u64, until: u64) {
         let later = self.waiting.split_off(&(now.saturating_add(1), 0));
         let held = std::mem::replace(&mut self.waiting, later);
-        self.waiting.extend(held.into_iter().map(|((_, number), due)| ((until, number), due)));
+        let moved = held.into_iter().map(|((when, number), due)| match due {
+            Due::Commit { .. } => ((when, number), due),
+            _ => ((until, number), due),
+        });
+        self.waiting.extend(moved);
     }
 
     fn add(&mut self, when: u64, due: Due) {
@@ -315,11 +270,13 @@ pub(super) fn add_commits(shared: &Shared, batches: &[(u32, u64)]) {
         batches.iter().for_each(|(component, number)| engine.commit(*component, *number, now));
         return shared.release(engine);
     }
-    shared.release(engine);
-    // With a number of 0 it is nothing that somebody waits for.
+    // All of them while the run goes on: at its end, those that wait are committed at once. With a number of 0 it is
+    // nothing that somebody waits for.
+    let now = shared.clock.now();
     for (component, number) in batches.iter().filter(|(_, number)| *number > 0) {
-        add(shared, None, Due::Commit { component: *component, number: *number });
+        engine.add_due(now, None, Due::Commit { component: *component, number: *number });
     }
+    shared.release(engine);
 }
 
 /// Queues an order, which was checked.
@@ -329,25 +286,33 @@ pub(super) fn add_order(shared: &Shared, at: Option<Time>, order: PendingOrder) 
 
 fn add(shared: &Shared, at: Option<Time>, due: Due) {
     let mut engine = shared.lock();
-    let now = shared.clock.now();
-    let when = at.map_or(0, Time::as_nanos).max(engine.next_instant(now));
-    engine.injections.add(when, due);
-    engine.look_at = engine.look_at.min(when);
-    engine.wake |= when < engine.roles.asleep_until;
+    engine.add_due(shared.clock.now(), at, due);
     shared.release(engine);
 }
 
 impl Engine {
+    fn add_due(&mut self, now: u64, at: Option<Time>, due: Due) {
+        let when = at.map_or(0, Time::as_nanos).max(self.next_instant(now));
+        self.injections.add(when, due);
+        self.look_at = self.look_at.min(when);
+        self.wake |= when < self.roles.asleep_until;
+    }
+
     /// Publishes the messages that are due.
     #[cold]
     pub(super) fn deliver_injections(&mut self, now: u64) {
-        let mut delivered = false;
+        let (mut delivered, mut are_held) = (false, None);
         self.standstill.note_effect(now);
         loop {
-            if self.injections.has_room(&self.bus, now) {
-                self.injections.held_since = None;
-            } else if self.hold_injections(now) {
-                break;
+            if let Some(has_room) = self.injections.has_room(&self.bus, now) {
+                are_held = Some(!has_room && self.hold_injections(now));
+                if are_held == Some(true) {
+                    // Commits are due still.
+                    continue;
+                }
+                if has_room {
+                    self.injections.held_since = None;
+                }
             }
             let Some(entry) = self.injections.waiting.first_entry().filter(|entry| entry.key().0 <= now) else { break };
             let when = entry.key().0;
@@ -388,6 +353,9 @@ impl Engine {
                 }
                 Due::Settled => self.end_if_done(now),
             }
+        }
+        if are_held == Some(false) {
+            self.injections.held_since = None;
         }
         if delivered {
             self.settle(now);
