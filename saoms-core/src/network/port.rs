@@ -136,7 +136,11 @@ impl Port {
         let mut waiting = self.lock();
         for from_run in all {
             match from_run {
-                from_run if waiting.from_run.len() < MOST_MESSAGES && !waiting.has_ended => {
+                // What is read is said once; it is no more than there are topics.
+                from_run
+                    if !waiting.has_ended
+                        && (waiting.from_run.len() < MOST_MESSAGES || matches!(from_run, FromRun::Reads { .. })) =>
+                {
                     waiting.from_run.push(from_run);
                 }
                 FromRun::Call { ticket, .. } => ticket.fill(Outcome::Dropped),
@@ -230,5 +234,21 @@ impl Receiver for Port {
         let mut waiting = self.lock();
         waiting.links.push(LinkChange { is_up, reason: reason.to_owned() });
         self.wake(waiting);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_components_read_is_never_lost() {
+        let port = Port::default();
+        let beat = || FromRun::Beat { node: String::new(), component: String::new(), caller: "".into(), period: 0 };
+        port.put((0..=MOST_MESSAGES).map(|_| beat()));
+        port.put([FromRun::Reads { topic: "TOPIC".into(), is_state: false, schema: 0 }].into_iter());
+        let waiting = port.take();
+        assert_eq!((waiting.from_run.len(), waiting.lost), (MOST_MESSAGES + 1, 0));
+        assert!(matches!(waiting.from_run.last(), Some(FromRun::Reads { .. })));
     }
 }
