@@ -11,7 +11,7 @@ use super::wire::{Alive, LARGEST_NUMBER, Reads, Received, Sends, Vote, Welcome};
 use super::{Exchange, MILLISECOND, look};
 
 /// Programs that are known at once, and topics of one of them, at most: more is no fleet.
-const MOST_PROGRAMS: usize = 4_096;
+pub(super) const MOST_PROGRAMS: usize = 4_096;
 const MOST_TOPICS: usize = 4_096;
 /// Each sign of life of so many says all that was received, the others what is new.
 const FULL: u64 = 8;
@@ -65,11 +65,11 @@ impl Exchange {
 
     /// A program is heard first. False if it is not heard any further.
     fn meet(&mut self, alive: &Alive) -> bool {
-        if self.peers.len() >= MOST_PROGRAMS {
+        let (program, is_recalled) = (alive.program, self.peers.contains_key(&alive.program));
+        if !is_recalled && self.peers.len() >= MOST_PROGRAMS && !self.give_up_one() {
             return false;
         }
         let name: Arc<str> = alive.name.as_str().into();
-        let (program, is_recalled) = (alive.program, self.peers.contains_key(&alive.program));
         if !is_recalled && alive.start != 0 && !self.succeed(alive) {
             return false;
         }
@@ -87,6 +87,20 @@ impl Exchange {
         // Calls may wait for it, or for one before it.
         self.calls_at = 0;
         self.say_soon();
+        true
+    }
+
+    /// Gives up the program that was missed first, as one that was killed: there are as many as can be known. False if
+    /// all are there.
+    fn give_up_one(&mut self) -> bool {
+        let away = self.peers.iter().filter(|(_, peer)| !peer.is_reachable);
+        let Some(program) = away.min_by_key(|(_, peer)| peer.heard).map(|(program, _)| *program) else { return false };
+        if let Some(peer) = self.remove_peer(program) {
+            // If it is there again after all, it begins anew.
+            self.left.remove(&program);
+            self.actions.push(Action::Tell(News::GivenUp { program, name: peer.name }));
+            self.forget_received();
+        }
         true
     }
 

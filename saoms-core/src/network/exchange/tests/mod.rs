@@ -6,11 +6,14 @@ mod hostile;
 pub(in crate::network::exchange) mod lossy;
 mod memory;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proptest::prelude::*;
 
 use self::lossy::{Lossy, MILLISECOND, Weather};
+use super::hear::MOST_PROGRAMS;
+use super::wire::Alive;
+use super::{Action, Exchange, News, Settings};
 
 /// The numbers that each program has received from each other one.
 type Heard = BTreeMap<(usize, usize), Vec<u64>>;
@@ -243,4 +246,39 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn programs_that_died_make_room_for_new_ones() {
+    let mut exchange = Exchange::new(Settings {
+        program: 0,
+        name: "own".to_owned(),
+        patience: 1_000 * MILLISECOND,
+        limit: 8 << 10,
+        components: BTreeSet::new(),
+        others: BTreeSet::new(),
+        memory: None,
+    });
+    let alive = |program: u64| Alive {
+        program,
+        number: 1,
+        name: format!("crashes-{program}"),
+        patience: 1_000,
+        ..Alive::default()
+    };
+    let joined = |exchange: &mut Exchange, name: &str| {
+        let is_it = |action: &Action| matches!(action, Action::Tell(News::Joined { name: one, .. }) if &**one == name);
+        exchange.take_actions().iter().any(is_it)
+    };
+    let most = MOST_PROGRAMS as u64;
+    (1..=most).for_each(|program| exchange.hear(&alive(program), program * MILLISECOND));
+    assert!(joined(&mut exchange, &format!("crashes-{most}")));
+    // All of them are there.
+    exchange.hear(&alive(most + 1), most * MILLISECOND);
+    assert!(!joined(&mut exchange, &format!("crashes-{}", most + 1)));
+    exchange.tick((most + 2_000) * MILLISECOND);
+    exchange.hear(&alive(most + 2), (most + 2_000) * MILLISECOND);
+    assert!(joined(&mut exchange, &format!("crashes-{}", most + 2)));
+    let known: Vec<u64> = exchange.others().map(|(program, _)| program).collect();
+    assert!(known.len() == MOST_PROGRAMS && !known.contains(&1), "{}", known.len());
 }
