@@ -26,8 +26,8 @@ const LOOK: u64 = 8;
 /// From here on those of topics.
 const FIRST_OF_TOPICS: u64 = 16;
 
-/// Time of a sleep, in nanoseconds, after which the thread was held up, as by SIGSTOP: what others said meanwhile has
-/// not arrived yet.
+/// Time between two looks at what others say, in nanoseconds, after which the thread was held up, as by SIGSTOP: what
+/// they said meanwhile has not arrived yet.
 const HELD_UP: u64 = 500_000_000;
 /// Time for which a program that ends waits until others have received its events.
 const LINGER: Duration = Duration::from_secs(15);
@@ -89,14 +89,15 @@ impl Drop for Client {
 fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
     let mut ending: Option<Instant> = None;
     let mut member = lock(shared);
+    let mut looked = member.now();
     loop {
-        let (before, sleep) = (member.now(), member.sleep());
+        let sleep = member.sleep();
         drop(member);
         port.wait(sleep, ending.is_some());
         member = lock(shared);
-        let slept = member.now() - before;
-        if slept > HELD_UP {
-            member.exchange.hold_up(slept);
+        let before = std::mem::replace(&mut looked, member.now());
+        if looked - before > HELD_UP {
+            member.exchange.hold_up(looked - before, looked);
         }
         // What was left until it had started is taken, too.
         let has_started = member.is_joining() && member.fleet.has_started();

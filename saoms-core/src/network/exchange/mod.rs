@@ -274,8 +274,9 @@ impl Exchange {
     }
 
     /// The program was held up for so long, and has not heard what others said meanwhile: they are not missed for that.
-    pub fn hold_up(&mut self, time: u64) {
-        self.peers.values_mut().for_each(|peer| peer.heard += time);
+    pub fn hold_up(&mut self, time: u64, now: u64) {
+        self.pass(now);
+        self.peers.values_mut().for_each(|peer| peer.heard = (peer.heard + time).min(now));
     }
 
     /// The other programs that are known, with their names, whether they are heard or not.

@@ -53,10 +53,15 @@ fn nobody_is_heard_when_all_others_are_missed() {
 fn who_was_held_up_itself_misses_nobody() {
     let mut own = program(&[]);
     own.hear(&alive(2, "one", Vote::Silent), 0);
-    own.hold_up(20_000 * MILLISECOND);
+    own.hold_up(20_000 * MILLISECOND, 20_000 * MILLISECOND);
     own.tick(20_500 * MILLISECOND);
     assert!(!own.hears_nobody());
     own.tick(22_000 * MILLISECOND);
+    assert!(own.hears_nobody());
+    // Who was heard meanwhile is not missed later for that.
+    own.hear(&Alive { number: 2, ..alive(2, "one", Vote::Silent) }, 39_000 * MILLISECOND);
+    own.hold_up(18_000 * MILLISECOND, 40_000 * MILLISECOND);
+    own.tick(41_500 * MILLISECOND);
     assert!(own.hears_nobody());
 }
 
