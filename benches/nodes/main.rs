@@ -67,6 +67,10 @@ struct Measured {
 
 fn main() -> Outcome<()> {
     let arguments = Arguments::parse();
+    if !arguments.bench {
+        eprintln!("a benchmark is run with `cargo bench --bench nodes`");
+        return Ok(());
+    }
     let mut all = Vec::new();
     for robots in &arguments.robots {
         eprintln!("{robots} robots");
@@ -106,7 +110,11 @@ impl Drop for Programs {
 
 /// Runs a fleet with so many robots in each program.
 fn measure(arguments: &Arguments, each: u32) -> Outcome<Measured> {
-    let folder = Path::new(common::RESULTS).join("nodes");
+    let folder = Path::new(common::RESULTS).join("nodes").join((each * NODES).to_string());
+    // Reports of an earlier run would be taken for those of a program that fails.
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
     fs::create_dir_all(&folder)?;
     let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
     let lasting = arguments.warm_up + arguments.seconds;
@@ -146,11 +154,14 @@ fn measure(arguments: &Arguments, each: u32) -> Outcome<Measured> {
         }
         delivered += report["luggage"]["delivered"].as_u64().unwrap_or_default();
     }
-    let of_each = |before: u64, after: u64| (after - before) as f64 / time / f64::from(robots);
+    let lost = || "the bytes cannot be told: a connection to the router has ended meanwhile";
+    let of_each = |before: u64, after: u64| -> Outcome<f64> {
+        Ok(after.checked_sub(before).ok_or_else(lost)? as f64 / time / f64::from(robots))
+    };
     Ok(Measured {
         robots,
-        to_router: of_each(before.0, after.0),
-        from_router: of_each(before.1, after.1),
+        to_router: of_each(before.0, after.0)?,
+        from_router: of_each(before.1, after.1)?,
         cpu_cores: cpu.as_secs_f64() / time,
         executions,
         missed,
@@ -163,6 +174,11 @@ fn measure(arguments: &Arguments, each: u32) -> Outcome<Measured> {
 fn carried(port: u16) -> Outcome<(u64, u64)> {
     let filter = format!("( sport = :{port} )");
     let output = Command::new("ss").args(["-tinH", "state", "established", &filter]).output()?;
+    if !output.status.success() || output.stdout.is_empty() {
+        return Err(
+            format!("`ss` shows no connection of the router: {}", String::from_utf8_lossy(&output.stderr)).into()
+        );
+    }
     let text = String::from_utf8(output.stdout)?;
     let sum = |name: &str| {
         let values = text.split_whitespace().filter_map(|word| word.strip_prefix(name)?.strip_prefix(':'));
