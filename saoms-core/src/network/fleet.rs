@@ -10,22 +10,16 @@ use super::exchange::wire::{Request, Vote};
 use super::exchange::{Arrived, Remembered};
 use super::rights::Granted;
 
-/// A message of another program for the fleet.
-#[derive(Clone, Debug)]
-pub struct FromNetwork {
-    /// The topic.
-    pub topic: Arc<str>,
-    /// The message.
-    pub arrived: Arrived,
-}
+/// Messages of other programs for the fleet by their topics, none of which waits for another one.
+pub type Undelivered = BTreeMap<Arc<str>, VecDeque<Arrived>>;
 
 /// The fleet of a program, as its part of a network sees it.
 pub trait Fleet: Send + 'static {
     /// True once its components are there: what they read was left at the port before.
     fn has_started(&self) -> bool;
 
-    /// Takes messages from the front, as many as find room.
-    fn deliver(&self, messages: &mut VecDeque<FromNetwork>);
+    /// Takes messages of each topic from the front, as many as find room.
+    fn deliver(&self, messages: &mut Undelivered);
 
     /// Serves a call of another program, or takes in a heartbeat. The answer of a call is left at the port.
     fn serve(&self, request: Request);

@@ -19,7 +19,7 @@ pub mod transport;
 pub(crate) const FROM_OUTSIDE: &str = "(outside)";
 
 pub use client::Client;
-pub use fleet::{Fleet, FromNetwork, Membership};
+pub use fleet::{Fleet, Membership, Undelivered};
 pub(crate) use port::FromRun;
 pub use port::Port;
 pub(crate) use ticket::Ticket;

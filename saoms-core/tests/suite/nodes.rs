@@ -1,6 +1,5 @@
 //! A part of a fleet knows the components of the other nodes.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -8,7 +7,7 @@ use saoms_api::host::{Registration, cdr};
 use saoms_api::{Class, Component, Context, Failure, Message, Publisher, Subscription, Time, Topic, info};
 use saoms_core::network::control::{ControlRequest, Reply};
 use saoms_core::network::exchange::Arrived;
-use saoms_core::network::{Fleet, FromNetwork, Port};
+use saoms_core::network::{Fleet, Port, Undelivered};
 use saoms_core::schedule::{NetworkHooks, NetworkedFleet, RunningFleet, Settings};
 use saoms_lang::registry::Registry;
 
@@ -78,18 +77,15 @@ fn told(settings: Settings, others: &[&str]) -> String {
     });
     let fleet = fleet.unwrap();
     fleet.run_until(Time::START + Duration::from_millis(50));
-    let arrived = |component: &&str| FromNetwork {
-        topic: Arc::from("WORDS"),
-        arrived: Arrived {
-            component: Arc::from(*component),
-            to: String::new(),
-            key: None,
-            sent: 0,
-            cause: 0,
-            bytes: cdr::encode(&Word { number: 7 }),
-        },
+    let arrived = |component: &&str| Arrived {
+        component: Arc::from(*component),
+        to: String::new(),
+        key: None,
+        sent: 0,
+        cause: 0,
+        bytes: cdr::encode(&Word { number: 7 }),
     };
-    let mut messages: VecDeque<FromNetwork> = others.iter().map(arrived).collect();
+    let mut messages = Undelivered::from([(Arc::from("WORDS"), others.iter().map(arrived).collect())]);
     network.unwrap().deliver(&mut messages);
     fleet.run_to_end();
     diary.lines()

@@ -3,7 +3,7 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::programs::{Programs, Transport};
+use super::programs::{Programs, Transport, component};
 use super::{MANY, reader, receives_all, senders};
 
 #[test]
@@ -86,4 +86,26 @@ fn a_program_that_is_killed_and_started_again_at_once_is_heard_from_its_first_ev
     let is_first = |sender: u32| wrong.iter().any(|line| line.starts_with(&format!("received 1 of Sender{sender},")));
     assert!(wrong.len() == 2 && is_first(1) && is_first(2), "{wrong:?}\n{}", programs.printed());
     programs.end_without(&broker, &["panicked", "are lost", "runs in program"]);
+}
+
+#[test]
+fn a_component_that_reads_nothing_for_long_keeps_nothing_from_others_in_its_program() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let url = programs.url(programs.port);
+    // It executes once, and has room for a part of what is sent.
+    let slow = [("ID", "slow"), ("period", "1h"), ("url", &url), ("count", "1000"), ("queue", "64")];
+    let near = [("ID", "near"), ("period", "100"), ("url", &url), ("from", "10"), ("to", "10")];
+    let both = component("slow", "numbers.Reader", &slow) + &component("near", "numbers.Walker", &near);
+    let reader = programs.start("reader", &both);
+    let sender = [("Sender1", "numbers.Sender", &[("count", "1000"), ("each", "100")][..])];
+    let senders = programs.tasks("senders", programs.port, &sender);
+    programs.until(&senders, "has sent 1 to 1000");
+    let walks = [("walks", "numbers.Walker", &[("from", "10"), ("to", "12")][..])];
+    let walks = programs.tasks("walks", programs.port, &walks);
+    programs.until(&reader, "meets walks at");
+    for program in [&reader, &walks, &senders] {
+        programs.stop(program);
+    }
+    programs.end_without(&broker, &["wrong:", "panicked"]);
 }

@@ -3,7 +3,7 @@
 mod actions;
 mod frames;
 
-use std::collections::{BTreeSet, HashMap, VecDeque};
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -14,7 +14,7 @@ use super::super::control::{Other, Requests};
 use super::super::exchange;
 use super::super::exchange::call::Outcome;
 use super::super::exchange::{Exchange, Keys, OwnMessage, Settings};
-use super::super::fleet::{Fleet, FromNetwork, Membership};
+use super::super::fleet::{Fleet, Membership, Undelivered};
 use super::super::port::{FromRun, Port, Waiting};
 use super::super::rights::Rights;
 use super::super::ticket::Ticket;
@@ -43,7 +43,7 @@ pub(super) struct Member<F> {
     pub(super) exchange: Exchange,
     pub(super) fleet: F,
     /// Messages for which the fleet had no room.
-    undelivered: VecDeque<FromNetwork>,
+    undelivered: Undelivered,
     /// With a state folder, what was delivered before the mark that components are to pass.
     marked: Vec<exchange::Delivered>,
     /// What the transport had no room for.
@@ -93,7 +93,7 @@ impl<F: Fleet> Member<F> {
         Member {
             session: Some(session),
             fleet,
-            undelivered: VecDeque::new(),
+            undelivered: Undelivered::new(),
             marked: Vec::new(),
             unsent: VecDeque::new(),
             start: Instant::now(),

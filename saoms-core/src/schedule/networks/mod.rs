@@ -24,9 +24,9 @@ use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::hash::text_hash;
 use crate::network::control::{ControlRequest, Reply};
-use crate::network::exchange::Remembered;
 use crate::network::exchange::wire::{Request, Vote};
-use crate::network::{Fleet, FromNetwork, FromRun, Port};
+use crate::network::exchange::{Arrived, Remembered};
+use crate::network::{Fleet, FromRun, Port, Undelivered};
 use crate::observe::{Notification, SentMessage};
 pub(super) use calls::interface_hash;
 use caught_up::Mark;
@@ -172,6 +172,46 @@ impl Engine {
         }
     }
 
+    /// Takes messages of other programs on a topic, as many as find room.
+    fn deliver_from_network(&mut self, topic: &Arc<str>, waiting: &mut VecDeque<Arrived>, now: u64) {
+        let found = match self.phase {
+            // Its components are about to be there.
+            RunPhase::Starting => return,
+            RunPhase::Running => self.bus.find(topic),
+            RunPhase::Stopping | RunPhase::Ended => None,
+        };
+        let Some((topic, schema)) = found.and_then(|topic| Some((topic, self.schema_of(topic).1.clone()?))) else {
+            return waiting.clear();
+        };
+        while self.bus.has_room(topic)
+            && let Some(mut arrived) = waiting.pop_front()
+        {
+            let to = (!arrived.to.is_empty()).then(|| self.numbers.get(arrived.to.as_str()).copied());
+            // One that is for a component of another program, or that is no message of the topic, is nothing here.
+            if to == Some(None) || schema.check(&arrived.bytes).is_err() {
+                continue;
+            }
+            if schema.move_times(&mut arrived.bytes, self.networks.epoch.saturating_neg()).is_err() {
+                continue;
+            }
+            let sender = match arrived.component.starts_with(OUTSIDE_NAME) {
+                true => OUTSIDE,
+                false => self.networks.elsewhere.hear(&arrived.component),
+            };
+            let cause = self.networks.elsewhere.cause(sender, arrived.cause);
+            let header = Header { sender, sent: Time::from_nanos(now), cause };
+            let (key, place) = (schema.key(&arrived.bytes), schema.place(&arrived.bytes));
+            let message = SharedMessage::from_bytes(header, None, arrived.bytes).of(key, place).only_to(to.flatten());
+            self.standstill.note_effect(now);
+            if let Some(observers) = self.bus.observers(topic).cloned() {
+                let (topic, component) = (Arc::clone(self.bus.name(topic)), arrived.component);
+                let sent = SentMessage { topic, component, message: message.clone(), is_of_other: true };
+                self.notifications.push(Notification::Sent(sent, observers));
+            }
+            self.send(topic, message, now);
+        }
+    }
+
     /// True if the run may end although no component votes: some are periodic, and nothing is to come from outside.
     fn has_nothing_to_wait_for(&mut self) -> bool {
         let is_periodic = self.slots.iter().any(|slot| slot.is_member() && slot.policy.periodic);
@@ -240,53 +280,17 @@ impl Fleet for NetworkedFleet {
         self.shared.look(|engine| engine.phase != RunPhase::Starting)
     }
 
-    fn deliver(&self, messages: &mut VecDeque<FromNetwork>) {
+    fn deliver(&self, messages: &mut Undelivered) {
         if messages.is_empty() {
             return;
         }
         let shared = &self.shared;
         let mut engine = shared.lock();
         let now = shared.clock.now();
-        while let Some(FromNetwork { topic, arrived }) = messages.front() {
-            let topic = match engine.phase {
-                // Its components are about to be there.
-                RunPhase::Starting => break,
-                RunPhase::Running => engine.bus.find(topic),
-                RunPhase::Stopping | RunPhase::Ended => None,
-            };
-            let Some((topic, schema)) = topic.and_then(|topic| Some((topic, engine.schema_of(topic).1.clone()?)))
-            else {
-                messages.pop_front();
-                continue;
-            };
-            if !engine.bus.has_room(topic) {
-                break;
-            }
-            let to = (!arrived.to.is_empty()).then(|| engine.numbers.get(arrived.to.as_str()).copied());
-            let Some(FromNetwork { mut arrived, .. }) = messages.pop_front() else { break };
-            // One that is for a component of another program, or that is no message of the topic, is nothing here.
-            if to == Some(None) || schema.check(&arrived.bytes).is_err() {
-                continue;
-            }
-            if schema.move_times(&mut arrived.bytes, engine.networks.epoch.saturating_neg()).is_err() {
-                continue;
-            }
-            let sender = match arrived.component.starts_with(OUTSIDE_NAME) {
-                true => OUTSIDE,
-                false => engine.networks.elsewhere.hear(&arrived.component),
-            };
-            let cause = engine.networks.elsewhere.cause(sender, arrived.cause);
-            let header = Header { sender, sent: Time::from_nanos(now), cause };
-            let (key, place) = (schema.key(&arrived.bytes), schema.place(&arrived.bytes));
-            let message = SharedMessage::from_bytes(header, None, arrived.bytes).of(key, place).only_to(to.flatten());
-            engine.standstill.note_effect(now);
-            if let Some(observers) = engine.bus.observers(topic).cloned() {
-                let (topic, component) = (Arc::clone(engine.bus.name(topic)), arrived.component);
-                let sent = SentMessage { topic, component, message: message.clone(), is_of_other: true };
-                engine.notifications.push(Notification::Sent(sent, observers));
-            }
-            engine.send(topic, message, now);
-        }
+        messages.retain(|topic, waiting| {
+            engine.deliver_from_network(topic, waiting, now);
+            !waiting.is_empty()
+        });
         shared.release(engine);
     }
 

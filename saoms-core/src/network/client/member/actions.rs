@@ -9,7 +9,7 @@ use super::Member;
 use crate::network::control::Answer;
 use crate::network::exchange::{Action, Destination, Keys, News};
 use crate::network::told::told;
-use crate::network::{Fleet, FromNetwork, key};
+use crate::network::{Fleet, key};
 
 /// The kind of alerts of programs that give no sign of life.
 const UNREACHABLE: &str = "unreachable";
@@ -36,7 +36,7 @@ impl<F: Fleet> Member<F> {
                     let (bytes, envelope) = frame.encode();
                     self.put_or_keep(&to, bytes, Some(envelope));
                 }
-                Action::Deliver { topic, arrived, .. } => self.undelivered.push_back(FromNetwork { topic, arrived }),
+                Action::Deliver { topic, arrived, .. } => self.undelivered.entry(topic).or_default().push_back(arrived),
                 Action::Serve(request) => self.fleet.serve(request),
                 Action::Answered { line, number, outcome } => {
                     if let Some(ticket) = self.tickets.remove(&(line, number)) {

@@ -14,8 +14,8 @@ use crate::network::transport::Delivered;
 
 /// Versions of other programs that are told, at most.
 const MOST_VERSIONS: usize = 8;
-/// Messages that wait for room in the fleet, at most: then the network is read no further, and its senders keep what
-/// they have.
+/// Messages of a topic that wait for room in the fleet, at most: then the topic is read no further, and its senders
+/// keep what they have.
 const MOST_UNDELIVERED: usize = 4_096;
 
 impl<F: Fleet> Member<F> {
@@ -96,16 +96,16 @@ impl<F: Fleet> Member<F> {
 
     /// Takes messages of a topic. True if some before them are missing.
     pub(super) fn take_messages(&mut self, delivered: &Delivered<'_>, now: u64) -> bool {
+        let part = |place| delivered.key.split('/').nth(place);
+        let kind = part(2);
+        let Some(topic) = part(if kind == Some("topic") { 3 } else { 4 }).and_then(key::name) else { return false };
         // Senders keep what is dropped here, and send it again.
-        if self.undelivered.len() > MOST_UNDELIVERED {
+        if self.undelivered.get(topic.as_str()).is_some_and(|waiting| waiting.len() > MOST_UNDELIVERED) {
             return false;
         }
-        let topic = |place| delivered.key.split('/').nth(place).and_then(key::name);
-        let topic = match delivered.key.split('/').nth(2) {
-            Some("topic") => topic(3),
-            Some("again") => topic(4),
-            _ => return cdr::decode(delivered.message).is_ok_and(|around| self.exchange.see(around, now)),
-        };
-        topic.is_some_and(|topic| self.exchange.receive(&topic, delivered.message, delivered.attachment, now))
+        match kind {
+            Some("topic" | "again") => self.exchange.receive(&topic, delivered.message, delivered.attachment, now),
+            _ => cdr::decode(delivered.message).is_ok_and(|around| self.exchange.see(around, now)),
+        }
     }
 }
