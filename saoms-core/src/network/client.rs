@@ -2,6 +2,9 @@
 
 mod link;
 mod member;
+#[cfg(test)]
+mod tests;
+mod unsent;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::JoinHandle;

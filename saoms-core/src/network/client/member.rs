@@ -22,6 +22,7 @@ use super::super::transport::{Delivered, TransportSession};
 use super::super::{FROM_OUTSIDE, key};
 use super::FIRST_OF_TOPICS;
 use super::link::Link;
+use super::unsent::UnsentQueue;
 
 /// Longest time between two looks at what is due, in nanoseconds.
 const LONGEST_PAUSE: u64 = 200_000_000;
@@ -31,9 +32,6 @@ const ROOM_AGAIN: Duration = Duration::from_millis(1);
 const MOST_AT_ONCE: usize = 1_024;
 /// Time from one word of a router about rights to the next.
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
-
-/// The key, the message and the envelope of something that is to be sent.
-type Unsent = (String, Arc<[u8]>, Option<Arc<[u8]>>);
 
 /// What is known and left to do. The thread of the network has it while it works; in between others do what cannot
 /// wait.
@@ -47,7 +45,7 @@ pub(super) struct Member<F> {
     /// With a state folder, what was delivered before the mark that components are to pass.
     marked: Vec<exchange::Delivered>,
     /// What the transport had no room for.
-    unsent: VecDeque<Unsent>,
+    unsent: UnsentQueue,
     start: Instant,
     /// When the exchange has something to do.
     next: u64,
@@ -95,7 +93,7 @@ impl<F: Fleet> Member<F> {
             fleet,
             undelivered: Undelivered::new(),
             marked: Vec::new(),
-            unsent: VecDeque::new(),
+            unsent: UnsentQueue::default(),
             start: Instant::now(),
             next: 0,
             program: settings.program,

@@ -41,6 +41,11 @@ pub fn peers(url: &str) -> Option<impl Iterator<Item = (&str, &str)>> {
 }
 
 impl Transport {
+    #[cfg(test)]
+    pub(in crate::network) fn of(table: &'static TransportTable) -> Transport {
+        Transport { table }
+    }
+
     /// The transport for a url: from the places that the user named (libraries or folders), then from where libraries
     /// lie beside the program.
     ///

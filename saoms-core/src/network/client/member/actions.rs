@@ -16,12 +16,9 @@ const UNREACHABLE: &str = "unreachable";
 
 impl<F: Fleet> Member<F> {
     pub(super) fn carry_out(&mut self) {
-        while let Some((key, bytes, envelope)) = self.unsent.pop_front() {
-            if !self.put(&key, &bytes, envelope.as_deref()) {
-                self.unsent.push_front((key, bytes, envelope));
-                break;
-            }
-        }
+        let mut unsent = std::mem::take(&mut self.unsent);
+        unsent.put(|(key, bytes, envelope)| self.put(key, bytes, envelope.as_deref()));
+        self.unsent = unsent;
         self.act();
     }
 
@@ -96,7 +93,7 @@ impl<F: Fleet> Member<F> {
             Destination::Reply(program) => key::reply(*program),
         };
         if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
-            self.unsent.push_back((key, bytes, envelope));
+            self.unsent.push((key, bytes, envelope));
         }
     }
 

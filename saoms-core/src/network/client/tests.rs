@@ -1,0 +1,257 @@
+//! A program's part of a network over a transport that notes what it is told.
+
+use std::collections::{BTreeSet, HashMap};
+use std::ffi::c_void;
+use std::ptr;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock, Mutex};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use saoms_abi::{Bytes, Sink, Status, TRANSPORT_VERSION, TransportEvents, TransportTable};
+use saoms_api::host::{SharedMessage, cdr};
+use saoms_api::{Cause, Header, Level, Time};
+
+use super::Client;
+use super::unsent::MOST_BYTES;
+use crate::network::control::{ControlRequest, Reply};
+use crate::network::exchange::wire::{Envelope, Request, Vote};
+use crate::network::exchange::{Remembered, Settings};
+use crate::network::transport::{Opened, SessionSettings, Transport, TransportSession};
+use crate::network::{Fleet, FromRun, Membership, Port, Undelivered};
+
+/// Longest time for something that has to happen.
+const LONGEST: Duration = Duration::from_secs(60);
+
+/// What a session was told.
+#[derive(Default)]
+struct Wire {
+    /// The key and the envelope of each message.
+    put: Mutex<Vec<(String, Vec<u8>)>>,
+    subscribed: Mutex<Vec<String>>,
+    is_full: AtomicBool,
+}
+
+impl Wire {
+    /// The numbers of the messages of components that were put.
+    fn numbers(&self) -> Vec<u64> {
+        let put = self.put.lock().unwrap();
+        let of_topics = put.iter().filter(|(key, _)| key.starts_with("saoms/1/topic/"));
+        let numbers = of_topics.flat_map(|(_, envelope)| {
+            let Envelope { number, messages, .. } = cdr::decode(envelope).unwrap();
+            number..number + messages.len() as u64
+        });
+        numbers.collect()
+    }
+}
+
+/// The wires of sessions by their urls, until these are opened.
+static WIRES: LazyLock<Mutex<HashMap<String, Arc<Wire>>>> = LazyLock::new(Mutex::default);
+
+static TABLE: TransportTable = TransportTable {
+    size: size_of::<TransportTable>(),
+    version: TRANSPORT_VERSION,
+    metadata: Bytes::NONE,
+    open,
+    judge,
+    put,
+    subscribe,
+    unsubscribe,
+    close,
+};
+
+unsafe extern "C" fn open(settings: Bytes, _: *const TransportEvents, session: *mut *mut c_void, _: Sink) -> Status {
+    // SAFETY: the caller lends the text until this returns.
+    let settings: serde_json::Value = serde_json::from_str(unsafe { settings.get_text() }.unwrap()).unwrap();
+    let wire = WIRES.lock().unwrap().remove(settings["url"].as_str().unwrap()).unwrap();
+    // SAFETY: the caller lends the place of the session.
+    unsafe { ptr::write(session, Arc::into_raw(wire).cast_mut().cast()) };
+    Status::OK
+}
+
+unsafe extern "C" fn judge(_: Bytes, _: Sink) -> Status {
+    Status::OK
+}
+
+/// # Safety
+/// The session is open.
+unsafe fn wire<'w>(session: *mut c_void) -> &'w Wire {
+    // SAFETY: it is the wire that `open` has given, until `close`.
+    unsafe { &*session.cast::<Wire>() }
+}
+
+unsafe extern "C" fn put(session: *mut c_void, key: Bytes, _: Bytes, attachment: Bytes, _: u32, _: Sink) -> Status {
+    // SAFETY: the session is open, and the caller lends the bytes until this returns.
+    let (wire, key, attachment) = unsafe { (wire(session), key.get_text(), attachment.get()) };
+    if wire.is_full.load(Ordering::SeqCst) {
+        return Status::FULL;
+    }
+    wire.put.lock().unwrap().push((key.unwrap().to_owned(), attachment.unwrap().to_vec()));
+    Status::OK
+}
+
+unsafe extern "C" fn subscribe(session: *mut c_void, keys: Bytes, _: u64, _: Sink) -> Status {
+    // SAFETY: as for `put`.
+    let (wire, keys) = unsafe { (wire(session), keys.get_text()) };
+    wire.subscribed.lock().unwrap().push(keys.unwrap().to_owned());
+    Status::OK
+}
+
+unsafe extern "C" fn unsubscribe(_: *mut c_void, _: u64, _: Sink) -> Status {
+    Status::OK
+}
+
+unsafe extern "C" fn close(session: *mut c_void) {
+    // SAFETY: it is the wire of `open`, and nobody uses the session any more.
+    drop(unsafe { Arc::from_raw(session.cast::<Wire>()) });
+}
+
+/// What a fleet is told, each with what was subscribed then.
+type Told = Vec<(String, Vec<String>)>;
+
+/// A fleet that does nothing, and notes what it is told, and what was subscribed when it was.
+struct Idle {
+    has_started: Arc<AtomicBool>,
+    told: Arc<Mutex<Told>>,
+    wire: Arc<Wire>,
+}
+
+impl Fleet for Idle {
+    fn has_started(&self) -> bool {
+        self.has_started.load(Ordering::SeqCst)
+    }
+
+    fn deliver(&self, messages: &mut Undelivered) {
+        messages.clear();
+    }
+
+    fn serve(&self, _: Request) {}
+
+    fn misses(&self, _: &str) {}
+
+    fn vote(&self) -> Vote {
+        Vote::Open
+    }
+
+    fn agree(&self, _: bool) {}
+
+    fn tell(&self, _: Level, text: String) {
+        self.told.lock().unwrap().push((text, self.wire.subscribed.lock().unwrap().clone()));
+    }
+
+    fn alert(&self, _: &str, _: &str, _: Option<String>) {}
+
+    fn control(&self, _: ControlRequest, _: Reply) {}
+
+    fn mark(&self) {}
+
+    fn has_passed_mark(&self) -> bool {
+        true
+    }
+
+    fn remember(&self, _: Vec<Remembered>) {}
+
+    fn lose(&self) {}
+}
+
+/// A program on a wire.
+struct Program {
+    wire: Arc<Wire>,
+    port: Arc<Port>,
+    has_started: Arc<AtomicBool>,
+    told: Arc<Mutex<Told>>,
+    _client: Client,
+}
+
+fn program(url: &str) -> Program {
+    let (wire, port, has_started, told) =
+        (Arc::<Wire>::default(), Arc::<Port>::default(), Arc::default(), Arc::default());
+    WIRES.lock().unwrap().insert(url.to_owned(), Arc::clone(&wire));
+    let settings = SessionSettings {
+        url: url.to_owned(),
+        listen: false,
+        peer: None,
+        account: None,
+        users: Vec::new(),
+        access: Vec::new(),
+        tls: None,
+    };
+    let opened = TransportSession::open(Transport::of(&TABLE), &settings, Arc::clone(&port) as Arc<_>).unwrap();
+    let Opened::Session(session) = opened else { panic!("{opened:?}") };
+    let member = Settings {
+        program: 1,
+        name: "own".to_owned(),
+        patience: 1_000_000_000,
+        limit: 1 << 20,
+        components: BTreeSet::from(["Own".to_owned()]),
+        others: BTreeSet::new(),
+        memory: None,
+    };
+    let fleet = Idle { has_started: Arc::clone(&has_started), told: Arc::clone(&told), wire: Arc::clone(&wire) };
+    let membership = Membership { url: url.to_owned(), ..Membership::default() };
+    let client = Client::start(session, &port, member, membership, fleet).unwrap();
+    Program { wire, port, has_started, told, _client: client }
+}
+
+fn message(size: usize) -> FromRun {
+    let header = Header { sender: 0, sent: Time::default(), cause: Cause::default() };
+    FromRun::Message {
+        topic: "EVENTS".into(),
+        component: "Own".into(),
+        to: None,
+        is_state: false,
+        schema: 0,
+        number: None,
+        message: SharedMessage::from_bytes(header, None, vec![7; size]),
+    }
+}
+
+#[track_caller]
+fn wait(what: &str, is_so: impl Fn() -> bool) {
+    let since = Instant::now();
+    while !is_so() {
+        assert!(since.elapsed() < LONGEST, "{what}");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn what_waits_for_room_in_a_transport_is_bounded() {
+    const SIZE: usize = 1 << 20;
+    let Program { wire, port, .. } = &program("full");
+    wire.is_full.store(true, Ordering::SeqCst);
+    let most = MOST_BYTES / SIZE;
+    for _ in 0..most + 16 {
+        port.put([message(SIZE)].into_iter());
+    }
+    // What is left once it has taken something later is taken after all of these.
+    for topic in ["LAST", "LATER"] {
+        port.put([FromRun::Reads { topic: topic.into(), is_state: false, schema: 0 }].into_iter());
+        wait("the port is not emptied", || wire.subscribed.lock().unwrap().iter().any(|keys| keys.contains(topic)));
+    }
+    wire.is_full.store(false, Ordering::SeqCst);
+    let numbers = || wire.numbers().len();
+    wait("nothing is put", || numbers() > 0);
+    port.put([message(8)].into_iter());
+    let last = most as u64 + 17;
+    wait("what comes after it is not put", || wire.numbers().contains(&last));
+    assert!(numbers() <= most + 1, "{} of {last}", numbers());
+}
+
+#[test]
+fn a_program_has_joined_once_what_its_components_read_is_subscribed() {
+    let Program { port, has_started, told, .. } = &program("joins");
+    let has_joined = || {
+        let told = told.lock().unwrap();
+        told.iter().find(|(text, _)| text.contains("has joined the network at `joins`")).cloned()
+    };
+    port.put([FromRun::Reads { topic: "FIRST".into(), is_state: false, schema: 0 }].into_iter());
+    port.put([FromRun::Reads { topic: "LAST".into(), is_state: false, schema: 0 }].into_iter());
+    has_started.store(true, Ordering::SeqCst);
+    wait("it has not joined", || has_joined().is_some());
+    let (_, subscribed) = has_joined().unwrap();
+    for topic in ["FIRST", "LAST"] {
+        assert!(subscribed.iter().any(|keys| keys.contains(topic)), "{subscribed:?}");
+    }
+    assert_eq!(told.lock().unwrap().iter().filter(|(text, _)| text.contains("has joined")).count(), 1);
+}
