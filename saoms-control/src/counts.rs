@@ -1,4 +1,14 @@
+use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
+
+/// What could not be written to the files of a run.
+#[derive(Clone, Debug, Default)]
+pub struct LossCounts {
+    /// Lines of the log.
+    pub log_lines: Arc<AtomicU64>,
+    /// Rows of the history.
+    pub history_rows: Arc<AtomicU64>,
+}
 
 /// What the server counts of its clients.
 #[derive(Debug, Default)]

@@ -24,6 +24,9 @@ pub struct FleetDescription {
     /// The file with the token with which a client may see everything.
     #[serde(default)]
     pub view_token_file: Option<String>,
+    /// The history that it writes.
+    #[serde(default)]
+    pub history: Option<String>,
     /// The seed of all chance.
     pub seed: u64,
 }

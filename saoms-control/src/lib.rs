@@ -20,6 +20,7 @@ mod topics;
 
 pub use alerts::{Acknowledgement, Alert, AlertList, AlertTarget};
 pub use client::{Client, ClientError, Response, running};
+pub use counts::LossCounts;
 pub use date::date;
 pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};

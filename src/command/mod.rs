@@ -11,6 +11,7 @@ mod graph;
 pub(crate) mod lsp;
 mod man;
 mod new;
+mod query;
 mod report;
 mod run;
 mod schema;
@@ -54,6 +55,7 @@ enum Command {
     Graph(graph::GraphArguments),
     Why(why::WhyArguments),
     Report(report::ReportArguments),
+    Query(query::QueryArguments),
     Ps(control::PsArguments),
     Status(control::StatusArguments),
     Top(control::TopArguments),
@@ -93,6 +95,7 @@ pub(crate) fn execute() -> Exit {
         Command::Graph(arguments) => graph::graph(&arguments),
         Command::Why(arguments) => why::why(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Query(arguments) => query::query(&arguments),
         Command::Ps(arguments) => control::ps(&arguments),
         Command::Status(arguments) => control::status(&arguments),
         Command::Top(arguments) => control::top(&arguments),

@@ -7,6 +7,7 @@
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
 //! - [`CurvesRegistration`]: figures of a run over time (`saoms run --timeline`), and which of them is its work,
 //! - [`DashboardView`]: what the page for browsers shows of the domain (`saoms run --serve`),
+//! - [`HistoryRegistration`]: tables of the history that a run leaves (`saoms run --history`),
 //! - [`InvariantsRegistration`]: what has to hold in each run, whatever is done to the fleet (`saoms simulate`),
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
@@ -20,6 +21,7 @@ mod curves;
 mod dashboard;
 mod events;
 mod failures;
+mod history;
 mod invariants;
 mod language;
 mod picture;
@@ -34,6 +36,9 @@ pub use curves::{Curve, CurvesRegistration, RunCurves};
 pub use dashboard::DashboardView;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};
+pub use history::{
+    HistoryColumn, HistoryKind, HistoryRegistration, HistoryRow, HistoryTable, HistoryValue, RunHistory,
+};
 pub use invariants::{
     ConcernedComponent, ConcernedTopic, InvariantsRegistration, Measure, RunEnd, RunInvariants, Violation,
 };

@@ -1,6 +1,7 @@
 //! Counts of the fleet in reports, their summary, and its curves over time.
 
 mod curves;
+mod history;
 
 use saoms_api::extension::{Counts, RunSummary, submit};
 

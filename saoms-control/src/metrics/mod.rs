@@ -13,7 +13,7 @@ use serde_json::Value;
 use text::{Number, Samples};
 
 use crate::alerts::AlertCounts;
-use crate::counts::ClientCounts;
+use crate::counts::{ClientCounts, LossCounts};
 use crate::description::FleetDescription;
 
 /// What the metrics are taken from.
@@ -21,8 +21,7 @@ pub(crate) struct Measured<'a> {
     pub(crate) description: &'a FleetDescription,
     pub(crate) fleet: &'a FleetMetrics,
     pub(crate) clients: &'a ClientCounts,
-    /// Lines of the file of the log that could not be written.
-    pub(crate) lost_lines: u64,
+    pub(crate) losses: &'a LossCounts,
     pub(crate) alerts: AlertCounts,
 }
 
@@ -154,7 +153,9 @@ pub const METRICS: &[Metric] = metrics! {
     "saoms_alerts_undelivered_total" counter [] "Changes of alerts that were not delivered to the address or the command of the composite."
         |measured, samples| samples.add(&[], measured.alerts.undelivered as f64);
     "saoms_log_lost_total" counter [] "Lines that could not be written to the file of the log."
-        |measured, samples| samples.add(&[], measured.lost_lines as f64);
+        |measured, samples| samples.add(&[], measured.losses.log_lines.load(Ordering::Relaxed) as f64);
+    "saoms_history_lost_total" counter [] "Rows that could not be written to the history."
+        |measured, samples| samples.add(&[], measured.losses.history_rows.load(Ordering::Relaxed) as f64);
     "saoms_control_clients" gauge [] "Clients that are connected."
         |measured, samples| samples.add(&[], measured.clients.open.load(Ordering::Relaxed) as f64);
     "saoms_control_refused_total" counter [] "Clients that were refused, because there were too many."

@@ -59,11 +59,18 @@ fn lines(metric: &str) -> Vec<String> {
         url: None,
         token_file: None,
         view_token_file: None,
+        history: None,
         seed: 0,
     };
     let clients = ClientCounts::default();
     let alerts = AlertCounts { kinds: vec![("a\"b".to_owned(), [2, 1, 5])], undelivered: 7 };
-    let text = text(&Measured { description: &description, fleet: &fleet, clients: &clients, lost_lines: 0, alerts });
+    let text = text(&Measured {
+        description: &description,
+        fleet: &fleet,
+        clients: &clients,
+        losses: &LossCounts::default(),
+        alerts,
+    });
     let is_it = |line: &&str| !line.starts_with('#') && line.starts_with(metric);
     text.lines().filter(is_it).map(|line| line[metric.len()..].to_owned()).collect()
 }

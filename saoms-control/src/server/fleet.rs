@@ -1,6 +1,5 @@
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
@@ -11,7 +10,7 @@ use tokio::sync::Mutex;
 
 use super::answer::{Refusal, waiting};
 use crate::alerts::AlertList;
-use crate::counts::ClientCounts;
+use crate::counts::{ClientCounts, LossCounts};
 use crate::description::FleetDescription;
 use crate::log::LogTail;
 use crate::metrics::{self, Measured};
@@ -55,8 +54,8 @@ pub struct ControlledFleet {
     pub(super) picture: Box<DrawPicture>,
     /// What is counted of its clients.
     pub(super) counts: Arc<ClientCounts>,
-    /// Lines of the file of the log that could not be written.
-    lost_lines: Arc<AtomicU64>,
+    /// What could not be written to the files of the run.
+    losses: LossCounts,
     /// The last snapshot, as text and as it is compared with the one before.
     pub(super) snapshot: Kept<Bytes>,
     pub(super) status: Kept<Arc<FleetStatus>>,
@@ -85,17 +84,17 @@ impl ControlledFleet {
             down,
             picture: Box::new(|| Err("this program cannot draw its composites".to_owned())),
             counts: Arc::default(),
-            lost_lines: Arc::default(),
+            losses: LossCounts::default(),
             snapshot: Kept::default(),
             status: Kept::default(),
             metrics: Kept::default(),
         }
     }
 
-    /// The same fleet, with the count of the lines that could not be written to the file of its log.
+    /// The same fleet, with the counts of what could not be written to the files of its run.
     #[must_use]
-    pub fn with_lost_lines(self, lost_lines: Arc<AtomicU64>) -> ControlledFleet {
-        ControlledFleet { lost_lines, ..self }
+    pub fn with_losses(self, losses: LossCounts) -> ControlledFleet {
+        ControlledFleet { losses, ..self }
     }
 
     /// The same fleet, with code that draws its composites when somebody wants to see them.
@@ -112,9 +111,8 @@ impl ControlledFleet {
     /// The metrics as text.
     pub(super) fn metrics_text(&self) -> String {
         let fleet = self.handle.metrics();
-        let lost_lines = self.lost_lines.load(Ordering::Relaxed);
-        let (description, clients) = (&self.description, &*self.counts);
-        metrics::text(&Measured { description, fleet: &fleet, clients, lost_lines, alerts: self.alerts.counts() })
+        let ControlledFleet { description, counts: clients, losses, .. } = self;
+        metrics::text(&Measured { description, fleet: &fleet, clients, losses, alerts: self.alerts.counts() })
     }
 }
 

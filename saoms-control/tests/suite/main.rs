@@ -56,6 +56,7 @@ fn served() -> Served {
         url: None,
         token_file: None,
         view_token_file: None,
+        history: None,
         seed: 1,
     };
     let downs = Arc::new(AtomicUsize::new(0));

@@ -25,6 +25,7 @@ pub(super) use orders::{
 };
 pub(super) use ps::{PsArguments, ps};
 pub(super) use status::{StatusArguments, status};
+pub(super) use table::Table;
 pub(super) use time::{PauseArguments, ResumeArguments, SpeedArguments, StepArguments, pause, resume, speed, step};
 pub(super) use top::{TopArguments, top};
 pub(super) use topic::{TopicArguments, topic};

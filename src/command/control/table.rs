@@ -1,24 +1,23 @@
 use std::fmt;
-use std::ops::Range;
 
 /// A table of texts, whose columns are as wide as their widest cell.
-pub(super) struct Table {
+pub(in crate::command) struct Table {
     rows: Vec<Vec<String>>,
     /// The columns whose cells stand at their right.
-    numbers: Range<usize>,
+    numbers: Vec<usize>,
 }
 
 impl Table {
-    pub(super) fn new(head: &[&str]) -> Table {
-        Table { rows: vec![head.iter().map(|&cell| cell.to_owned()).collect()], numbers: 0..0 }
+    pub(in crate::command) fn new(head: &[&str]) -> Table {
+        Table { rows: vec![head.iter().map(|&cell| cell.to_owned()).collect()], numbers: Vec::new() }
     }
 
     /// The same table with numbers in these columns.
-    pub(super) fn with_numbers(self, numbers: Range<usize>) -> Table {
-        Table { numbers, ..self }
+    pub(in crate::command) fn with_numbers(self, numbers: impl IntoIterator<Item = usize>) -> Table {
+        Table { numbers: numbers.into_iter().collect(), ..self }
     }
 
-    pub(super) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub(in crate::command) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 }

@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -10,8 +9,8 @@ use clap::Args;
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{
-    AlertList, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkError, NetworkListener,
-    Places, SentLine, TokenFile, Tokens, TopicWatch, default_socket, token_beside, view_token_beside,
+    AlertList, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, LossCounts, NetworkError,
+    NetworkListener, Places, SentLine, TokenFile, Tokens, TopicWatch, default_socket, token_beside, view_token_beside,
 };
 use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
@@ -19,6 +18,7 @@ use saoms_core::schedule::Handle;
 use super::RunArguments;
 use super::ending::Signalled;
 use super::events::{Languages, Numbers, Sent};
+use super::history;
 use super::picture;
 use crate::Exit;
 use crate::arguments::FleetArguments;
@@ -104,7 +104,7 @@ impl Control {
         handle: &Handle,
         signals: &Signalled,
         numbers: &Numbers,
-        lost_lines: &Arc<AtomicU64>,
+        losses: LossCounts,
         alerts: &Arc<AlertList>,
         files: FleetArguments,
     ) -> Option<ControlServer> {
@@ -128,7 +128,7 @@ impl Control {
             ControlledFleet::new(description, handle.clone(), (log, topics, Arc::clone(alerts)), send, move || {
                 ending.down(&fleet)
             });
-        let fleet = fleet.with_lost_lines(Arc::clone(lost_lines)).with_picture(move || picture::drawn(&files, started));
+        let fleet = fleet.with_losses(losses).with_picture(move || picture::drawn(&files, started));
         match ControlServer::start(places, fleet) {
             Ok(server) => {
                 if let Some(((url, file), view)) = place {
@@ -202,6 +202,7 @@ fn description(arguments: &RunArguments) -> FleetDescription {
         url: None,
         token_file: None,
         view_token_file: None,
+        history: history::path(arguments).map(|path| path.display().to_string()),
         seed: arguments.seed,
     }
 }

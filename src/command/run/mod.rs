@@ -6,6 +6,7 @@ mod control;
 mod ending;
 mod events;
 pub(super) mod faults;
+mod history;
 mod log_file;
 mod log_lines;
 mod networks;
@@ -29,7 +30,7 @@ use clap::{Args, ValueEnum};
 use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
-use saoms_control::AlertList;
+use saoms_control::{AlertList, LossCounts};
 use saoms_core::observe::{AdaptationWatch, InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings, Speed};
@@ -49,6 +50,7 @@ pub(super) use ending::is_ignored;
 use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers, Unreadable};
 use faults::{FaultScript, Known, report_wrong};
+use history::HistoryArguments;
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
 pub(super) use networks::read_private;
@@ -125,6 +127,9 @@ pub(crate) struct RunArguments {
     /// component
     #[arg(long, value_name = "FILE")]
     pub(crate) journal: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) history: HistoryArguments,
 
     /// Read events from this file, or as they come from standard input (`-`): one scenario line each, such as `at 3s
     /// luggage (3,1) to (3,10)`; an event without a time happens at once. A wrong line is reported and ignored
@@ -285,17 +290,25 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let style = LogStyle::of(&arguments.log, &assembly);
     let read = read.into_iter().chain(state::files(arguments)).collect();
     let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
-    let RunFiles { report, picture, timeline, journal, log } = files_written;
+    let RunFiles { report, picture, timeline, journal, history, log } = files_written;
     let alerts: Arc<AlertList> = Arc::default();
+    let history = match history.map(|path| history::open(&path, arguments, &alerts)).transpose() {
+        Ok(history) => history,
+        Err(exit) => return exit,
+    };
     let mut delivery = match AlertDelivery::of(arguments, &assembly.run, &alerts) {
         Ok(delivery) => delivery,
         Err(exit) => return exit,
     };
     let log = log.map(|log| log.with_alerts(&alerts));
-    let lost_lines = log.as_ref().map(LogFile::lost).unwrap_or_default();
+    let losses = LossCounts {
+        log_lines: log.as_ref().map(LogFile::lost).unwrap_or_default(),
+        history_rows: history.as_ref().map(|history| history.lost()).unwrap_or_default(),
+    };
     // With a file, somebody wants the whole run, seen or not.
     let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
     let only_prints = journal.is_none()
+        && history.is_none()
         && log.is_none()
         && is_standard(&report)
         && [&picture, &timeline].into_iter().all(is_standard);
@@ -312,6 +325,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, style))];
     observers.extend(log.map(|log| Arc::new(log) as Arc<dyn Observer>));
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
+    observers.extend(history.map(|history| Arc::new(history) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     observers.extend(timeline.clone().map(|timeline| timeline as Arc<dyn Observer>));
@@ -339,8 +353,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
         clients = networks.join(handle, &signals, &door)?;
-        server =
-            control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts, files.clone()));
+        server = control
+            .and_then(|control| control.serve(handle, &signals, &numbers, losses.clone(), &alerts, files.clone()));
         door.open(server.as_ref());
         Ok(())
     };
@@ -391,7 +405,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())
         || timeline.is_some_and(|timeline| timeline.output.has_failed())
-        || lost_lines.load(Ordering::Relaxed) > 0
+        || losses.log_lines.load(Ordering::Relaxed) > 0
+        || history::lacks_rows(&losses)
     {
         return Exit::Failed;
     }

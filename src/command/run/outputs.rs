@@ -17,6 +17,7 @@ pub(super) struct RunFiles {
     pub(super) picture: Option<Output>,
     pub(super) timeline: Option<Output>,
     pub(super) journal: Option<JournalFile>,
+    pub(super) history: Option<PathBuf>,
     pub(super) log: Option<LogFile>,
 }
 
@@ -43,6 +44,7 @@ impl RunFiles {
         let picture = add("picture", "--paths", arguments.paths.as_deref(), false);
         let timeline = add("timeline", "--timeline", arguments.timeline.as_deref(), false);
         let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
+        let history = add("history", "--history", arguments.history.file.as_deref(), true);
         let log = add("log", "--log", arguments.log.log.as_deref(), true);
         let rotation = arguments.log.rotation();
         let moved = [&journal, &log].into_iter().flatten().filter(|_| rotation.is_any());
@@ -60,8 +62,11 @@ impl RunFiles {
             let log = log.and_then(|(asked, place)| {
                 log_file(asked, place, rotation, style).map_err(|error| told(asked, error)).ok()
             });
+            let history = history.and_then(|(asked, place)| {
+                history_file(&place).map_err(|error| problems.push(asked.unwritable(&error))).ok()
+            });
             if problems.is_empty() {
-                return Some(RunFiles { report, picture, timeline, journal, log });
+                return Some(RunFiles { report, picture, timeline, journal, history, log });
             }
         }
         eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
@@ -105,6 +110,15 @@ fn grown(asked: Asked<'_>, place: Place, rotation: Rotation) -> io::Result<Journ
             Ok(JournalFile::new(path).with_mode(mode_of_files()).with_rotation(rotation, tell))
         }
         Sink::Standard => Err(io::Error::other("standard output is for the lines of the run; give it a file")),
+    }
+}
+
+fn history_file(place: &Place) -> io::Result<PathBuf> {
+    match place {
+        Place::File(path) => Ok(path.clone()),
+        Place::Descriptor(_) | Place::Irregular(_) => {
+            Err(io::Error::other("the history is a database; give it a file"))
+        }
     }
 }
 

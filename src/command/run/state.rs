@@ -39,6 +39,7 @@ fn taken_by(arguments: &RunArguments, folder: &Path) -> Option<&'static str> {
         ("--paths", arguments.paths.as_deref()),
         ("--timeline", arguments.timeline.as_deref()),
         ("--journal", arguments.journal.as_deref()),
+        ("--history", arguments.history.file.as_deref()),
         ("--log", arguments.log.log.as_deref()),
         ("--control", control),
     ];

@@ -6,6 +6,7 @@ mod events;
 mod explain;
 mod fmt;
 mod graph;
+mod history;
 mod log;
 mod new;
 mod operation;

@@ -1,0 +1,235 @@
+use std::collections::{BTreeSet, HashMap};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use saoms_api::Failure;
+use saoms_api::extension::{HistoryRegistration, HistoryTable, RunHistory};
+use saoms_api::host::TopicDeclaration;
+use saoms_core::journal::ComponentName;
+use saoms_core::observe::{Beginning, Interest, Observer, Occurrence, Records, RunEvent, SentMessage};
+use saoms_core::report::RunReport;
+
+use crate::HistoryError;
+use crate::writer::{Writer, Written, open};
+
+/// What a history says of a run beside what the run itself says.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HistoryRun {
+    /// The name of the first composite.
+    pub name: String,
+    /// The files of the composites.
+    pub composites: Vec<String>,
+    /// The node that runs, of a fleet in several programs.
+    pub node: Option<String>,
+    /// The version of the program.
+    pub version: String,
+    /// Age at which records of the journal are removed; `None` is never.
+    pub keep: Option<Duration>,
+}
+
+/// Who hears that a history cannot be written.
+pub trait HistoryEvents: Send + Sync {
+    /// From now on rows are lost.
+    fn fails(&self, text: &str);
+    /// Rows can be written again.
+    fn works(&self);
+}
+
+/// The observer that writes the history of a run, while it goes on.
+///
+/// What cannot be written is counted, and the next rows are tried again: a full disk or another program that writes for
+/// long does not end the run.
+pub struct History {
+    path: PathBuf,
+    run: HistoryRun,
+    events: Box<dyn HistoryEvents>,
+    lost: Arc<AtomicU64>,
+    /// Locked for moments alone: a thread of the run asks which topics are wanted.
+    sources: Mutex<Vec<Source>>,
+    state: Mutex<State>,
+}
+
+/// The tables of a crate of components, and what gives their rows.
+struct Source {
+    tables: &'static [HistoryTable],
+    history: Box<dyn RunHistory>,
+    /// The topics that it wants.
+    topics: BTreeSet<String>,
+}
+
+/// Component, kind and subject of an alert.
+type AlertKey = (Option<Arc<str>>, Arc<str>, Arc<str>);
+
+#[derive(Default)]
+struct State {
+    writer: Option<Writer>,
+    /// The alerts that last, with their numbers.
+    alerts: HashMap<AlertKey, i64>,
+    raised: i64,
+    /// True if the last rows could not be written.
+    fails: bool,
+    /// Rows whose loss the database does not know of.
+    untold: u64,
+}
+
+impl History {
+    /// The history at a path. The file is tried before the run begins.
+    ///
+    /// # Errors
+    /// The file is no history, or cannot be used.
+    pub fn open(path: &Path, run: HistoryRun, events: Box<dyn HistoryEvents>) -> Result<History, HistoryError> {
+        let sources = HistoryRegistration::linked().into_iter();
+        let source =
+            |one: &HistoryRegistration| Source { tables: one.tables, history: (one.new)(), topics: BTreeSet::new() };
+        let sources: Vec<Source> = sources.map(source).collect();
+        drop(open(path, &tables(&sources))?);
+        let (path, sources) = (path.to_owned(), Mutex::new(sources));
+        Ok(History { path, run, events, lost: Arc::default(), sources, state: Mutex::default() })
+    }
+
+    /// The number of rows that could not be written.
+    pub fn lost(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.lost)
+    }
+
+    /// Writes so many rows, or counts them as lost.
+    fn write(&self, rows: u64, write: impl FnOnce(&mut State) -> Written) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        if state.writer.is_none() {
+            return;
+        }
+        match write(&mut state) {
+            Ok(()) => {
+                if std::mem::take(&mut state.fails) {
+                    state.writer.iter().for_each(|writer| writer.is_patient(true));
+                    self.events.works();
+                }
+                let lost = self.lost.load(Ordering::Relaxed);
+                if state.untold > 0 && state.writer.as_mut().is_some_and(|writer| writer.lost(lost).is_ok()) {
+                    state.untold = 0;
+                }
+            }
+            Err(error) => {
+                self.lost.fetch_add(rows, Ordering::Relaxed);
+                state.untold += rows;
+                if !std::mem::replace(&mut state.fails, true) {
+                    state.writer.iter().for_each(|writer| writer.is_patient(false));
+                    let path = self.path.display();
+                    self.events.fails(&format!("the history cannot be written to `{path}`: {error}; rows are lost"));
+                }
+            }
+        }
+    }
+}
+
+fn tables(sources: &[Source]) -> Vec<&'static HistoryTable> {
+    sources.iter().flat_map(|source| source.tables).collect()
+}
+
+fn components(components: &[ComponentName]) -> impl Iterator<Item = (&str, Option<&str>, Option<f64>)> {
+    components.iter().map(|one| (&*one.name, one.id.as_deref(), one.period_us.map(|period| period as f64 / 1e6)))
+}
+
+impl fmt::Debug for History {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_tuple("History").field(&self.path).finish()
+    }
+}
+
+impl Observer for History {
+    fn interest(&self) -> Interest {
+        Interest { journal: true, ..Interest::NONE }
+    }
+
+    fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
+        let tables = tables(&self.sources.lock().unwrap_or_else(PoisonError::into_inner));
+        let connection = open(&self.path, &tables).map_err(|error| Failure::new(error.to_string()))?;
+        let clock = if beginning.is_virtual { "virtual" } else { "real" };
+        let writer = Writer::begin(connection, &tables, &self.run, (clock, beginning.seed)).and_then(|mut writer| {
+            writer.components(components(beginning.components))?;
+            Ok(writer)
+        });
+        let writer = writer.map_err(|error| {
+            Failure::new(format!("the history `{}` cannot be written: {error}", self.path.display()))
+        })?;
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).writer = Some(writer);
+        Ok(())
+    }
+
+    fn event(&self, event: &RunEvent) {
+        let Occurrence::Alert { kind, subject, text } = &event.what else { return };
+        let time = event.time.as_secs_f64();
+        self.write(1, |state| {
+            let State { writer: Some(writer), alerts, raised, .. } = state else { return Ok(()) };
+            let key = (event.component.clone(), Arc::clone(kind), Arc::clone(subject));
+            match text {
+                Some(text) => {
+                    let known = alerts.get(&key).copied();
+                    let number = known.unwrap_or_else(|| {
+                        *raised += 1;
+                        *raised
+                    });
+                    let about = (&**kind, event.component.as_deref(), &**subject);
+                    alerts.insert(key, number);
+                    writer.alert((number, known.is_none()), about, text, time)
+                }
+                None => alerts.remove(&key).map_or(Ok(()), |number| writer.alert_over(number, time)),
+            }
+        });
+    }
+
+    fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        let mut is_wanted = false;
+        for source in self.sources.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+            if source.history.wants_topic(name, declared) {
+                is_wanted = true;
+                source.topics.insert(name.to_owned());
+            }
+        }
+        is_wanted
+    }
+
+    fn message(&self, sent: &SentMessage) {
+        let SentMessage { topic, component, message, .. } = sent;
+        let time = message.header().sent.as_secs_f64();
+        let mut new = Vec::new();
+        for source in self.sources.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+            if source.topics.contains(&**topic) {
+                let rows = source.history.message(topic, component, message);
+                if !rows.is_empty() {
+                    new.push((source.tables, rows));
+                }
+            }
+        }
+        for (tables, rows) in new {
+            self.write(rows.len() as u64, |state| {
+                state.writer.as_mut().map_or(Ok(()), |writer| writer.rows(tables, time, &rows))
+            });
+        }
+    }
+
+    fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
+        if records.lost > 0 {
+            self.lost.fetch_add(records.lost, Ordering::Relaxed);
+            self.state.lock().unwrap_or_else(PoisonError::into_inner).untold += records.lost;
+        }
+        let rows = (records.entries.len() + records.joined.len()) as u64;
+        self.write(rows, |state| {
+            let Some(writer) = &mut state.writer else { return Ok(()) };
+            if !records.joined.is_empty() {
+                writer.components(components(records.joined))?;
+            }
+            if records.entries.is_empty() { Ok(()) } else { writer.records(records.entries) }
+        });
+        Ok(())
+    }
+
+    fn end(&self, report: &RunReport) {
+        self.write(1, |state| state.writer.as_mut().map_or(Ok(()), |writer| writer.end(report)));
+        // The last connection that is closed leaves one file.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).writer = None;
+    }
+}
