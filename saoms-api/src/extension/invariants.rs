@@ -48,6 +48,8 @@ pub struct ConcernedComponent {
     pub path: String,
     /// The topics on which it may send.
     pub publishes: Vec<ConcernedTopic>,
+    /// True if it begins anew after a failure.
+    pub restarts: bool,
 }
 
 /// A topic on which a component that a fault concerns may send.

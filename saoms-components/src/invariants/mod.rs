@@ -81,7 +81,7 @@ struct Site {
     pieces: Pieces,
     /// True if its world is of this program, which counts what is delivered then.
     has_world: bool,
-    /// True if its world or a zone has crashed for good: without it no robot moves.
+    /// True if its world or a zone has crashed or failed for good: without it no robot moves.
     has_stopped: bool,
 }
 
@@ -186,11 +186,13 @@ impl RunInvariants for FleetInvariants {
 
     fn fault(&mut self, at: Time, call: &FaultCall, concerned: &[ConcernedComponent]) {
         self.tide.begin(at, call);
-        if !matches!(call.kind, FaultKind::Crash { restart: None }) {
-            return;
-        }
+        let ends = |one: &&ConcernedComponent| match call.kind {
+            FaultKind::Crash { restart } => restart.is_none(),
+            FaultKind::Fail => !one.restarts,
+            _ => false,
+        };
         let indispensable = [AREA.declaration().message, TERRITORY.declaration().message];
-        let topics = concerned.iter().flat_map(|one| &one.publishes);
+        let topics = concerned.iter().filter(ends).flat_map(|one| &one.publishes);
         for topic in topics.filter(|topic| indispensable.contains(&&*topic.message)) {
             self.sites.entry(site_of(&topic.name).to_owned()).or_default().has_stopped = true;
         }

@@ -6,7 +6,7 @@ use saoms_api::event::fault::{FaultCall, FaultKind, names_component};
 use saoms_api::extension::{ConcernedComponent, ConcernedTopic};
 use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Cause, Level};
-use saoms_lang::assembly::ComponentSpec;
+use saoms_lang::assembly::{ComponentSpec, Restart};
 
 use super::Engine;
 use super::slot::Slot;
@@ -41,7 +41,8 @@ fn concerned(spec: &ComponentSpec) -> ConcernedComponent {
         name: spec.topic(&declared.name).into_owned(),
         message: declared.message.clone(),
     });
-    ConcernedComponent { path: spec.path.clone(), publishes: publishes.collect() }
+    let restarts = spec.task.as_ref().is_some_and(|task| task.restart == Restart::OnFailure);
+    ConcernedComponent { path: spec.path.clone(), publishes: publishes.collect(), restarts }
 }
 
 impl Engine {

@@ -7,7 +7,7 @@ use saoms_core::report::{RunReport, RunStatus};
 use saoms_testkit::{Fleet, Run};
 use serde_json::Value;
 
-use crate::support::{empty_folder, saoms_in};
+use crate::support::{empty_folder, root, saoms_in};
 
 const HOUR: Duration = Duration::from_secs(3600);
 
@@ -194,6 +194,28 @@ fn a_world_that_forgets_all_when_it_crashes_is_warned_of() {
     let found = "faults.txt:1:7: `World` has forgotten its robots and its luggage when it starts again";
     assert!(printed.contains(&format!("warning[S5031]: {found}")), "{printed}");
     assert!(!printed.contains("faults.txt:2") && output.status.code() != Some(2), "{printed}");
+}
+
+#[test]
+fn nothing_has_to_happen_where_a_zone_has_failed_for_good() {
+    let folder = empty_folder("strain-zone");
+    let airport = root().join("composites/airport.composite").display().to_string();
+    let restarts = fs::read_to_string(&airport).unwrap().replace(
+        r#"<implementation.java class="saoms.Zone"/>"#,
+        r#"<implementation.java class="saoms.Zone"/><property name="restart">onFailure</property>"#,
+    );
+    fs::write(folder.join("restarts.composite"), restarts).unwrap();
+    fs::write(folder.join("faults.txt"), "at 3s fail Zone\n").unwrap();
+    let run = |composite: &str| {
+        let arguments =
+            ["run", composite, "--virtual", "--invariants", "--quiet", "--for", "5min", "--faults", "faults.txt"];
+        let output = saoms_in(&folder, &arguments);
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, printed) = run(&airport);
+    assert!(code == Some(1) && !printed.contains("error: ["), "{printed}");
+    let (code, printed) = run("restarts.composite");
+    assert_eq!(code, Some(0), "{printed}");
 }
 
 #[test]
