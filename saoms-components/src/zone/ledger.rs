@@ -51,6 +51,21 @@ impl Member {
         unheard.map_or(self.request.end, |step| step.block)
     }
 
+    /// True if it released a block behind which others are granted that it has not heard of yet: it cannot get to them,
+    /// and releases them, too.
+    pub(crate) fn is_cut(&self) -> bool {
+        let unheard = self.steps.iter().find(|step| step.number > self.request.received);
+        unheard.is_some_and(|step| step.block.distance(self.request.end) > 1)
+    }
+
+    /// Number of moves after which it is on a block of the zone, on its way to the end of its passage; 0 if it is
+    /// there, or stays there.
+    pub(crate) fn moves_to(&self, block: Block) -> u32 {
+        let is_passed = self.end() != block;
+        let place = self.steps.iter().position(|step| step.block == block).filter(|_| is_passed);
+        u32::try_from(place.unwrap_or(0)).unwrap_or(u32::MAX)
+    }
+
     /// True if it stands on one block, and its passage ends there.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.steps.len() < 2 && self.request.block == self.end()

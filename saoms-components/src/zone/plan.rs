@@ -207,7 +207,7 @@ impl Round<'_> {
     /// Grants a robot its next block, unless it still has one ahead.
     fn serve(&mut self, robot: u32) {
         let Some(member) = self.ledger.member(robot) else { return };
-        if self.decided.contains(&robot) || member.steps.len() > 2 {
+        if self.decided.contains(&robot) || member.steps.len() > 2 || member.is_cut() {
             return;
         }
         self.leads_over_edge = false;
@@ -249,6 +249,9 @@ impl Round<'_> {
         let Some(member) = self.ledger.member(robot) else { return Outcome::Refused };
         if member.request.standing != Standing::MakesWay || line == 0 {
             return Outcome::Refused;
+        }
+        if member.is_cut() {
+            return Outcome::Waits;
         }
         let (end, goal) = (member.end(), member.request.goal);
         let asker = makes_way.unwrap_or(Asker { goal, rank: member.request.rank });
@@ -343,10 +346,14 @@ impl Round<'_> {
                 continue;
             }
             let is_outside = !self.ledger.territory().contains(block);
-            let is_held = self.ledger.holder(block).is_some() || self.outside.contains_key(&block);
+            let holder = self.ledger.holder(block);
+            let is_held = holder.is_some() || self.outside.contains_key(&block);
+            // What lies on the passage of a robot that is still far away stays held for long.
+            let moves = holder.and_then(|holder| self.ledger.member(holder)).map_or(0, |other| other.moves_to(block));
             // One that makes way deeper into a dead end soon comes out again, and asks in its turn.
             let comes_back = makes_way.is_some() && is_deeper;
-            let worse = if is_held { MOVE / 2 } else { 0 } + if comes_back { 2 * MOVE } else { 0 };
+            let held = if is_held { MOVE / 2 + moves * MOVE } else { 0 };
+            let worse = held + if comes_back { 2 * MOVE } else { 0 };
             // Over the edge another zone has to agree.
             let worse = worse + if makes_way.is_some() && is_outside { 2 * MOVE } else { 0 };
             candidates.push((cost.saturating_add(worse), is_held, block));
@@ -378,6 +385,7 @@ impl Round<'_> {
             && !self.busy.contains(&robot)
             && member.wants_to_go()
             && !member.steps.is_empty()
+            && !member.is_cut()
         {
             let (end, goal) = (member.end(), member.request.goal);
             let is_needed = member.steps.len() <= member.request.ahead.min(MOST_AHEAD) as usize;
