@@ -21,7 +21,7 @@ pub enum HistoryError {
         /// The version of its tables.
         version: i64,
     },
-    /// A table of a crate of components lacks a column, or is none of this program.
+    /// A table of a crate of components was made by another version of that crate, without a column that this one has.
     Table {
         /// The path.
         path: PathBuf,

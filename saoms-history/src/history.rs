@@ -168,13 +168,13 @@ impl Observer for History {
             match text {
                 Some(text) => {
                     let known = alerts.get(&key).copied();
-                    let number = known.unwrap_or_else(|| {
-                        *raised += 1;
-                        *raised
-                    });
+                    let number = known.unwrap_or(*raised + 1);
                     let about = (&**kind, event.component.as_deref(), &**subject);
+                    writer.alert((number, known.is_none()), about, text, time)?;
+                    // One whose row was lost has its row once it is raised again.
                     alerts.insert(key, number);
-                    writer.alert((number, known.is_none()), about, text, time)
+                    *raised = number.max(*raised);
+                    Ok(())
                 }
                 None => alerts.remove(&key).map_or(Ok(()), |number| writer.alert_over(number, time)),
             }

@@ -15,5 +15,5 @@ mod writer;
 
 pub use error::HistoryError;
 pub use history::{History, HistoryEvents, HistoryRun};
-pub use questions::{Answer, Cell, Questions};
+pub use questions::{Answer, Questions};
 pub use tables::{ColumnDoc, TableDoc, table_docs};

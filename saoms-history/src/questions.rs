@@ -1,8 +1,9 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags};
+use saoms_api::extension::HistoryValue;
 
 use crate::HistoryError;
 use crate::writer::{check, refused};
@@ -10,7 +11,6 @@ use crate::writer::{check, refused};
 /// A history that is asked, also while a fleet writes it.
 #[derive(Debug)]
 pub struct Questions {
-    path: PathBuf,
     connection: Connection,
 }
 
@@ -19,21 +19,8 @@ pub struct Questions {
 pub struct Answer {
     /// The names of the columns.
     pub columns: Vec<String>,
-    /// The rows, with a cell for each column.
-    pub rows: Vec<Vec<Cell>>,
-}
-
-/// A cell of an answer.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
-    /// Nothing.
-    Null,
-    /// A whole number.
-    Integer(i64),
-    /// A number.
-    Real(f64),
-    /// A text. Bytes that are no UTF-8 are replaced.
-    Text(String),
+    /// The rows, with a value for each column. Bytes are texts here; those that are no UTF-8 are replaced.
+    pub rows: Vec<Vec<HistoryValue>>,
 }
 
 /// Time for which a question waits for a program that repairs or ends the database.
@@ -55,7 +42,7 @@ impl Questions {
         connection.busy_timeout(BUSY).map_err(of_database)?;
         connection.pragma_update(None, "query_only", true).map_err(of_database)?;
         check(path, &connection)?;
-        Ok(Questions { path: path.to_owned(), connection })
+        Ok(Questions { connection })
     }
 
     /// Asks a question in SQL.
@@ -79,14 +66,11 @@ impl Questions {
         let mut found = statement.query([]).map_err(wrong)?;
         let mut rows = Vec::new();
         while let Some(row) = found.next().map_err(wrong)? {
-            rows.push((0..count).map(|column| row.get_ref(column).map(cell)).collect::<Result<_, _>>().map_err(wrong)?);
+            rows.push(
+                (0..count).map(|column| row.get_ref(column).map(value)).collect::<Result<_, _>>().map_err(wrong)?,
+            );
         }
         Ok(Answer { columns, rows })
-    }
-
-    /// The path of the history.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 }
 
@@ -99,11 +83,11 @@ fn reason(error: &rusqlite::Error) -> String {
     }
 }
 
-fn cell(value: ValueRef<'_>) -> Cell {
+fn value(value: ValueRef<'_>) -> HistoryValue {
     match value {
-        ValueRef::Null => Cell::Null,
-        ValueRef::Integer(value) => Cell::Integer(value),
-        ValueRef::Real(value) => Cell::Real(value),
-        ValueRef::Text(text) | ValueRef::Blob(text) => Cell::Text(String::from_utf8_lossy(text).into_owned()),
+        ValueRef::Null => HistoryValue::Null,
+        ValueRef::Integer(value) => HistoryValue::Integer(value),
+        ValueRef::Real(value) => HistoryValue::Real(value),
+        ValueRef::Text(text) | ValueRef::Blob(text) => HistoryValue::Text(String::from_utf8_lossy(text).into_owned()),
     }
 }

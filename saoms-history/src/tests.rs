@@ -6,9 +6,10 @@ use std::sync::{Arc, Mutex};
 
 use rusqlite::Connection;
 use saoms_api::Time;
+use saoms_api::extension::HistoryValue;
 use saoms_core::observe::{Beginning, Observer, Occurrence, RunEvent};
 
-use crate::{Cell, History, HistoryError, HistoryEvents, HistoryRun, Questions};
+use crate::{History, HistoryError, HistoryEvents, HistoryRun, Questions};
 
 /// What was told, in order.
 #[derive(Clone, Default)]
@@ -43,7 +44,7 @@ fn alert(second: u64, subject: &str, text: Option<&str>) -> RunEvent {
     }
 }
 
-fn ask(path: &Path, question: &str) -> Vec<Vec<Cell>> {
+fn ask(path: &Path, question: &str) -> Vec<Vec<HistoryValue>> {
     Questions::open(path).unwrap().ask(question).unwrap().rows
 }
 
@@ -64,8 +65,14 @@ fn an_alert_is_one_row_from_its_begin_to_its_end() {
     }
     let rows = ask(&path, "select alert, subject, text, raised_s, over_s from alerts order by alert");
     let row = |alert, subject: &str, text: &str, raised, over: Option<f64>| {
-        let [subject, text] = [subject, text].map(|text| Cell::Text(text.to_owned()));
-        vec![Cell::Integer(alert), subject, text, Cell::Real(raised), over.map_or(Cell::Null, Cell::Real)]
+        let [subject, text] = [subject, text].map(|text| HistoryValue::Text(text.to_owned()));
+        vec![
+            HistoryValue::Integer(alert),
+            subject,
+            text,
+            HistoryValue::Real(raised),
+            over.map_or(HistoryValue::Null, HistoryValue::Real),
+        ]
     };
     assert_eq!(
         rows,
@@ -76,7 +83,7 @@ fn an_alert_is_one_row_from_its_begin_to_its_end() {
         ]
     );
     let seed = ask(&path, "select seed, ended from runs");
-    assert_eq!(seed, [[Cell::Text(u64::MAX.to_string()), Cell::Null]]);
+    assert_eq!(seed, [[HistoryValue::Text(u64::MAX.to_string()), HistoryValue::Null]]);
 }
 
 #[test]
@@ -96,8 +103,11 @@ fn rows_that_cannot_be_written_are_counted_and_told_until_they_can() {
     let told = told.0.lock().unwrap().clone();
     assert!(told[0].contains("h.db`: database is locked; rows are lost"), "{told:?}");
     assert_eq!(told[1..], ["works"]);
-    assert_eq!(ask(&path, "select subject from alerts"), [[Cell::Text("b".to_owned())]]);
-    assert_eq!(ask(&path, "select lost from runs"), [[Cell::Integer(3)]]);
+    assert_eq!(ask(&path, "select subject from alerts"), [[HistoryValue::Text("b".to_owned())]]);
+    assert_eq!(ask(&path, "select lost from runs"), [[HistoryValue::Integer(3)]]);
+    history.event(&alert(5, "a", Some("is stuck")));
+    let row = |number, subject: &str| vec![HistoryValue::Integer(number), HistoryValue::Text(subject.to_owned())];
+    assert_eq!(ask(&path, "select alert, subject from alerts order by alert"), [row(1, "b"), row(2, "a")]);
 }
 
 #[test]

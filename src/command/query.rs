@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use saoms_api::extension::HistoryValue;
 use saoms_api::host::one_line;
-use saoms_history::{Answer, Cell, Questions, TableDoc, table_docs};
+use saoms_history::{Answer, Questions, TableDoc, table_docs};
 use serde_json::{Value, json};
 
 use super::control::{RunningFleetArguments, Table};
@@ -84,27 +85,27 @@ fn table_json(table: &TableDoc) -> Value {
 }
 
 fn as_json(answer: &Answer) -> Value {
-    let cell = |cell: &Cell| match cell {
-        Cell::Null => Value::Null,
-        Cell::Integer(value) => Value::from(*value),
-        Cell::Real(value) => Value::from(*value),
-        Cell::Text(text) => Value::from(text.as_str()),
+    let cell = |cell: &HistoryValue| match cell {
+        HistoryValue::Null => Value::Null,
+        HistoryValue::Integer(value) => Value::from(*value),
+        HistoryValue::Real(value) => Value::from(*value),
+        HistoryValue::Text(text) => Value::from(text.as_str()),
     };
     let rows = answer.rows.iter().map(|row| row.iter().map(cell).collect::<Vec<Value>>());
     json!({ "columns": answer.columns, "rows": rows.collect::<Vec<_>>() })
 }
 
 fn as_table(answer: &Answer) -> String {
-    let cell = |cell: &Cell| match cell {
-        Cell::Null => String::new(),
-        Cell::Integer(value) => value.to_string(),
-        Cell::Real(value) => value.to_string(),
-        Cell::Text(text) => one_line(text).into_owned(),
+    let cell = |cell: &HistoryValue| match cell {
+        HistoryValue::Null => String::new(),
+        HistoryValue::Integer(value) => value.to_string(),
+        HistoryValue::Real(value) => value.to_string(),
+        HistoryValue::Text(text) => one_line(text).into_owned(),
     };
     let names: Vec<String> = answer.columns.iter().map(|name| one_line(name).into_owned()).collect();
     let is_number = |column: &usize| {
         let mut cells = answer.rows.iter().filter_map(|row| row.get(*column));
-        cells.all(|cell| !matches!(cell, Cell::Text(_)))
+        cells.all(|cell| !matches!(cell, HistoryValue::Text(_)))
     };
     let numbers: Vec<usize> = (0..names.len()).filter(is_number).collect();
     let mut table = Table::new(&names.iter().map(String::as_str).collect::<Vec<_>>()).with_numbers(numbers);
