@@ -9,11 +9,11 @@ use saoms_api::event::fault::{FaultCall, FaultSubjects};
 use saoms_api::extension::{EventContent, EventLanguage, LineFault, TimedMessage};
 use saoms_api::host::format_duration;
 use saoms_core::schedule::{Handle, Takers};
-use saoms_lang::assembly::{Assembly, fault_subjects, seen};
+use saoms_lang::assembly::{Assembly, ComponentSpec, fault_subjects, seen};
 use saoms_lang::diagnostic::{Severity, SeverityLevel};
 use saoms_lang::load::missing_file_help;
 
-use super::events::{Languages, Numbers, happen, shown, site_of};
+use super::events::{Languages, Numbers, happen, known_site, shown, site_of};
 use crate::output::{counted, displayed, eprint};
 
 /// The greatest size of such a file, in bytes.
@@ -66,6 +66,18 @@ impl Known {
         levels.filter_map(|(_, level)| SeverityLevel::from_name(level.split(':').next()?)).next()
     }
 
+    /// The topics of the fleet, by the names that they have after renaming.
+    fn topics(&self) -> Vec<String> {
+        let of = |spec: &ComponentSpec| -> Vec<String> {
+            let declared = spec.class.declaration();
+            declared.publishes.iter().chain(&declared.subscribes).map(|one| spec.topic(&one.name).into()).collect()
+        };
+        let mut topics: Vec<String> = self.assembly.all().flat_map(of).collect();
+        topics.sort();
+        topics.dedup();
+        topics
+    }
+
     fn subjects(&self, site: &str) -> FaultSubjects {
         fault_subjects(self.assembly.all().filter(|spec| site.is_empty() || spec.site == *site))
     }
@@ -82,7 +94,11 @@ impl Known {
     fn judge(&self, event: &PlannedEvent) -> Result<(), LineFault> {
         let text = &event.message.text;
         match event.message.content {
-            EventContent::Bytes(_) => Ok(()),
+            EventContent::Bytes(_) => {
+                let (site, topics) = (&event.site, self.topics());
+                let whole = 0..text.len();
+                known_site(site, event.topic, &topics).map_err(|problem| LineFault::new(whole, problem))
+            }
             EventContent::Raised if FaultCall::is_one(text) => {
                 self.subjects(&event.site).check(&FaultCall::read(text)?)
             }

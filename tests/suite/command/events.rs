@@ -197,6 +197,15 @@ fn an_event_says_its_site() {
     told(8, "the fleet has no site `Paris`; its sites are North, South");
     told(9, "the fleet has no site `Paris`; its sites are North, South");
     assert!(text.contains("    South: lugage (1,1)\n           ^^^^^^\n"), "{text}");
+    fs::write(yard.folder.path().join("faults.txt"), "at 1s breakdown 1\nNort: at 1s breakdown 1\n").unwrap();
+    let output = saoms_in(yard.folder.path(), &["run", "yard.composite", "--virtual", "--faults", "faults.txt"]);
+    let refused = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{refused}");
+    let expected = "error: faults.txt:1:7: this fleet has sites: write the site before the event, as in `North: at 3s ...`; \
+                    the sites are North, South\n    at 1s breakdown 1\n          ^^^^^^^^^^^\n\
+                    error: faults.txt:2:13: the fleet has no site `Nort`; did you mean `North`?\n    \
+                    Nort: at 1s breakdown 1\n                ^^^^^^^^^^^\n\n2 errors: nothing was started\n";
+    assert!(refused.ends_with(expected), "{refused}");
     for line in ["North: luggage (3,1) to (3,4)\n", "at 2s North: luggage (3,1) to (3,4)\n"] {
         let (_, text) = Yard::new().run(&["--virtual", "--events", "-", "--for", "10min"], line);
         assert!(text.contains("this fleet has no sites: write the event without `North:`"), "{text}");

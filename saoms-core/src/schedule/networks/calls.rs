@@ -30,6 +30,11 @@ impl Engine {
             return provider.filter(|_| refusal.is_none()).map(|provider| (provider, period));
         }
         let call = RemoteCall::new(network, request, caller, now);
+        if provider.is_none() && self.phase == RunPhase::Starting {
+            // A program joins its networks before all of its components are members: who calls puts the call again.
+            self.leave_unserved(&call);
+            return None;
+        }
         let provider = match (provider, refusal) {
             (Some(provider), None) => provider,
             (_, refusal) => {
@@ -91,5 +96,29 @@ impl Engine {
             ends.filter_map(|end| self.numbers.get(end.component.as_str()).copied()).collect::<Vec<u32>>()
         });
         moved.collect::<Vec<u32>>().into_iter().for_each(|provider| self.stops.request_of(provider));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::FromRun;
+    use crate::schedule::os::clock::Clock;
+    use crate::schedule::settings::Settings;
+    use crate::schedule::shared::Shared;
+
+    #[test]
+    fn a_call_of_a_component_that_is_not_there_yet_is_put_again() {
+        let shared = Shared::new(Settings::default(), Clock::real(), Vec::new());
+        let mut engine = shared.lock();
+        let mut said = |phase: RunPhase| {
+            engine.phase = phase;
+            let request = Request { number: 1, component: "World".to_owned(), ..Request::default() };
+            assert_eq!(engine.serve(0, request, 0), None);
+            engine.networks.waiting.pop()
+        };
+        assert!(matches!(said(RunPhase::Starting), Some((0, FromRun::Unserved { number: 1, .. }))));
+        let refused = said(RunPhase::Running);
+        assert!(matches!(refused, Some((0, FromRun::Reply { answer: Err(CallError::Mismatch { .. }), .. }))));
     }
 }

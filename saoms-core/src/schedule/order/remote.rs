@@ -94,7 +94,7 @@ impl Engine {
     }
 
     /// Says that a call of another program has not begun, and does not any more.
-    pub(super) fn leave_unserved(&mut self, call: &RemoteCall) {
+    pub(in crate::schedule) fn leave_unserved(&mut self, call: &RemoteCall) {
         let Request { program, line, number, .. } = call.request;
         self.networks.waiting.push((call.network, FromRun::Unserved { program, line, number }));
     }

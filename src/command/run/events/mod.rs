@@ -260,7 +260,7 @@ pub(super) fn happen(message: TimedMessage, (site, language): (&str, &str), hand
     let line = if site.is_empty() { text.clone() } else { format!("{site}: {text}") };
     match content {
         EventContent::Bytes(bytes) => {
-            let topic = if site.is_empty() { language.to_owned() } else { format!("{site}/{language}") };
+            let topic = topic_of(site, language);
             let injection = Injection { topic, content: InjectedContent::Bytes(bytes), at, text: line };
             handle.inject(injection).map_err(|error| refused(site, language, &error))
         }
@@ -284,11 +284,32 @@ fn raise_error(text: &str, error: RaiseError) -> String {
     }
 }
 
+/// Checks that components take the events of a language in this site; the topics are those of the fleet.
+///
+/// # Errors
+/// The reason why they do not, with the sites that there are.
+pub(super) fn known_site(site: &str, language: &str, topics: &[String]) -> Result<(), String> {
+    let topic = topic_of(site, language);
+    if topics.contains(&topic) { Ok(()) } else { Err(unknown_site(site, language, topics)) }
+}
+
+/// The topic of the events of a language in a site.
+fn topic_of(site: &str, language: &str) -> String {
+    if site.is_empty() { language.to_owned() } else { format!("{site}/{language}") }
+}
+
 /// The reason why an event for a site, or for a fleet without sites, does not happen.
 fn refused(site: &str, topic: &str, error: &InjectError) -> String {
-    let InjectError::UnknownTopic { known, .. } = error else { return error.to_string() };
-    let of_site = |name: &String| name.strip_suffix(topic)?.strip_suffix('/').map(str::to_owned);
-    let sites: Vec<String> = known.iter().filter_map(of_site).collect();
+    match error {
+        InjectError::UnknownTopic { known, .. } => unknown_site(site, topic, known),
+        _ => error.to_string(),
+    }
+}
+
+/// The reason why nobody takes the events of a language in a site.
+fn unknown_site(site: &str, language: &str, topics: &[String]) -> String {
+    let of_site = |name: &String| name.strip_suffix(language)?.strip_suffix('/').map(str::to_owned);
+    let sites: Vec<String> = topics.iter().filter_map(of_site).collect();
     // Who writes it behind the time means the word before the colon.
     let (before, site) = site.rsplit_once(char::is_whitespace).unwrap_or(("", site));
     let meant = sites.iter().find(|name| *name == site).map(String::as_str);
@@ -300,7 +321,7 @@ fn refused(site: &str, topic: &str, error: &InjectError) -> String {
         {
             format!("the site comes first: write `{meant}: {before} ...`")
         }
-        ("", None) => error.to_string(),
+        ("", None) => format!("no component of the fleet takes such events: none reads topic `{language}`"),
         (site, None) => format!("this fleet has no sites: write the event without `{site}:`"),
         ("", Some(first)) => {
             let sites = sites.join(", ");
