@@ -26,6 +26,7 @@ struct Declared {
     stops: bool,
     reacts: bool,
     apart: bool,
+    alternates: bool,
     saves: bool,
     knowledge: Option<Path>,
     loops: Option<DefaultLoops>,
@@ -248,10 +249,11 @@ impl Declared {
             "stops" if !self.stops => self.stops = true,
             "reacts" if !self.reacts => self.reacts = true,
             "apart" if !self.apart => self.apart = true,
+            "alternates" if !self.alternates => self.alternates = true,
             "saves" if !self.saves => self.saves = true,
             "knowledge" if self.knowledge.is_none() => self.knowledge = Some(meta.value()?.parse()?),
             "loops" if self.loops.is_none() => self.loops = Some(DefaultLoops::of(meta.input)?),
-            "stops" | "reacts" | "apart" | "saves" | "knowledge" | "loops" => {
+            "stops" | "reacts" | "apart" | "alternates" | "saves" | "knowledge" | "loops" => {
                 return Err(meta.error("this is given already"));
             }
             "also" => {
@@ -262,7 +264,7 @@ impl Declared {
             _ => {
                 return Err(meta.error(
                     "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, \
-                     `reference`, `stops`, `reacts`, `apart`, `saves`, `knowledge`, `loops`, `also`",
+                     `reference`, `stops`, `reacts`, `apart`, `alternates`, `saves`, `knowledge`, `loops`, `also`",
                 ));
             }
         }
@@ -304,7 +306,13 @@ impl Declared {
         });
         text.plain(",\"references\":");
         handles::declare_references(&mut text, &self.references, handles)?;
-        let abilities = [(self.stops, "stops"), (self.reacts, "reacts"), (self.apart, "apart"), (self.saves, "saves")];
+        let abilities = [
+            (self.stops, "stops"),
+            (self.reacts, "reacts"),
+            (self.apart, "apart"),
+            (self.alternates, "alternates"),
+            (self.saves, "saves"),
+        ];
         for (_, ability) in abilities.iter().filter(|(has, _)| *has) {
             text.plain(&format!(",\"{ability}\":true"));
         }

@@ -159,21 +159,27 @@ fn implementation(component: &ComponentSpec) -> NewElement {
 
 /// The properties of a component of a class.
 fn valued(component: &ComponentSpec) -> Vec<NewElement> {
-    let presets = component.class.presets();
+    let (presets, declared) = (component.class.presets(), component.class.declaration());
     let own = component.values.iter().zip(component.written.as_deref().unwrap_or(&component.values));
     let own = own.filter(|(value, _)| !presets.contains(value)).map(|(_, (name, written))| property(name, written));
     let is_own = |name: &SmolStr| component.values.iter().any(|(own, _)| own == name);
-    let task = component.task.iter().flat_map(stated).filter(|(name, _)| !is_own(name));
+    let task =
+        component.task.iter().flat_map(|task| stated(task, declared.alternates)).filter(|(name, _)| !is_own(name));
     own.chain(task.map(|(name, value)| property(&name, &value))).collect()
 }
 
-/// The task properties that a composite has to give, in order: the required ones, and those that are not the default.
-fn stated(task: &TaskProperties) -> Vec<(SmolStr, PropertyValue)> {
+/// The task properties that a composite has to give, in order: the required ones, and those that are not the default of
+/// a class that alternates with others, or does not.
+fn stated(task: &TaskProperties, alternates: bool) -> Vec<(SmolStr, PropertyValue)> {
     let declarations = TaskProperties::declarations();
     let is_required = |name: &str| declarations.iter().any(|one| one.required && one.name == name);
     let mut all = task.to_values();
     let required: Vec<_> = all.iter().filter(|(name, _)| is_required(name)).cloned().collect();
-    let usual = TaskProperties::from_values(&required).map_or_else(|_| Vec::new(), |usual| usual.to_values());
+    let usual = TaskProperties::from_values(&required).map(|usual| {
+        let delay = if alternates { usual.period / 2 } else { usual.delay };
+        TaskProperties { delay, ..usual }.to_values()
+    });
+    let usual = usual.unwrap_or_default();
     all.retain(|one| {
         let (name, is_usual) = (one.0.as_str(), usual.contains(one));
         !is_usual || is_required(name) || OF_RESTART.contains(&name) && task.restart == Restart::OnFailure
@@ -251,10 +257,10 @@ fn simple(class: &str) -> &str {
 mod tests {
     use super::*;
 
-    fn shown(values: &[(&str, &str)]) -> String {
+    fn shown(values: &[(&str, &str)], alternates: bool) -> String {
         let values: Vec<(SmolStr, PropertyValue)> =
             values.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
-        let stated = stated(&TaskProperties::from_values(&values).unwrap());
+        let stated = stated(&TaskProperties::from_values(&values).unwrap(), alternates);
         let shown = stated.iter().map(|(name, value)| match value {
             PropertyValue::Scalar(value) => format!("{name}={value}"),
             other => panic!("{other:?}"),
@@ -264,8 +270,12 @@ mod tests {
 
     #[test]
     fn a_composite_states_what_is_required_and_what_is_not_the_default() {
-        let task = |more: &[(&str, &str)]| shown(&[&[("ID", "a"), ("period", "1000")], more].concat());
+        let of =
+            |more: &[(&str, &str)], alternates| shown(&[&[("ID", "a"), ("period", "1000")], more].concat(), alternates);
+        let task = |more: &[(&str, &str)]| of(more, false);
         assert_eq!(task(&[]), "ID=a period=1s");
+        assert_eq!(of(&[("delay", "500")], true), "ID=a period=1s");
+        assert_eq!(of(&[("delay", "0")], true), "ID=a period=1s delay=0ms");
         assert_eq!(task(&[("delay", "0"), ("useJMS", "true")]), "ID=a period=1s");
         // Without it, a queue is as large as its topic needs.
         assert_eq!(task(&[("queue", "01024")]), "ID=a period=1s queue=1024");

@@ -344,6 +344,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
 /// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
 /// | `apart` | it never runs on the thread of the timer, as code that may wait; nor do those that are wired to it |
+/// | `alternates` | without a `delay`, it begins half a period later: between those that begin at once, whose messages it answers |
 /// | `saves` | it [saves](Component::save) its state after each execution, for the one that a restart puts in its place |
 /// | `reacts` | it has a function [`react`](Component::react) for messages that trigger it |
 /// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |

@@ -12,6 +12,7 @@ struct EnvironmentMemory {
     playing: Option<Playing>,
     played: u64,
     open: Vec<OpenPiece>,
+    out: Vec<OutRobot>,
     luggage: u32,
     visits: u32,
     speakers: SpeakerMemory,
@@ -23,6 +24,12 @@ struct EnvironmentMemory {
 struct Playing {
     start: Time,
     player: PlayerMemory,
+}
+
+#[derive(Clone, Debug, Field)]
+struct OutRobot {
+    robot: u32,
+    since: Time,
 }
 
 #[derive(Clone, Debug, Field)]
@@ -39,6 +46,7 @@ impl Environment {
             playing: playing.map(|(start, player)| Playing { start: *start, player: player.memory() }),
             played: self.played as u64,
             open: open.collect(),
+            out: self.out.iter().map(|(&robot, &since)| OutRobot { robot, since }).collect(),
             luggage: self.luggage,
             visits: self.visits,
             speakers: self.validator.memory(),
@@ -56,6 +64,7 @@ impl Environment {
         };
         self.played = usize::try_from(memory.played).unwrap_or(usize::MAX);
         self.open = memory.open.into_iter().map(|piece| (piece.luggage, piece.job)).collect();
+        self.out = memory.out.into_iter().map(|out| (out.robot, out.since)).collect();
         (self.luggage, self.visits) = (memory.luggage, memory.visits);
         self.validator.restore(memory.speakers);
         (self.has_world, self.done) = (memory.has_world, memory.done);

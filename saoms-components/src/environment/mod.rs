@@ -66,6 +66,8 @@ pub struct Environment {
     /// Luggage and visits that are published, but not done yet.
     open: BTreeMap<u32, OpenJob>,
     most_open: usize,
+    /// The time since when each robot is out that was taken off the floor, or whose component failed.
+    out: BTreeMap<u32, Time>,
     luggage: u32,
     visits: u32,
     map: Option<Map>,
@@ -99,6 +101,7 @@ impl Component for Environment {
             playing: None,
             played: 0,
             open: BTreeMap::new(),
+            out: BTreeMap::new(),
             most_open: properties.most_open.map_or(usize::MAX, |most| most as usize),
             luggage: 0,
             visits: 0,
@@ -200,6 +203,8 @@ impl Environment {
             if self.validator.accepts(removal, header, self.map.as_ref(), context) {
                 self.open.retain(|luggage, _| !removal.delivered.contains(luggage));
                 let execution = context.execution();
+                let since = self.out.entry(removal.robot).or_default();
+                *since = removal.since.max(*since);
                 self.open.iter_mut().for_each(|(number, job)| job.hear_removal(*number, removal, execution));
             }
         }
@@ -212,7 +217,9 @@ impl Environment {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,
                 _ => {
-                    self.open.entry(response.luggage).and_modify(|job| job.hear(response));
+                    let (out, execution) = (self.out.get(&response.robot).copied(), context.execution());
+                    let job = self.open.entry(response.luggage);
+                    job.and_modify(|job| job.hear(response, header.sent, out, execution));
                     continue;
                 }
             };

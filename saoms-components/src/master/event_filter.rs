@@ -10,6 +10,8 @@ pub(super) struct EventFilter {
     area: Option<Map>,
     /// Numbers of all luggage so far.
     known: Numbers,
+    /// Numbers of luggage that others requested from the robots: a master that begins anew may have to take it on.
+    heard: Numbers,
 }
 
 /// Refusal of luggage with its reason.
@@ -21,14 +23,19 @@ pub(super) struct Refusal {
 }
 
 impl EventFilter {
-    /// A filter that knows this luggage.
-    pub(super) fn of(known: Numbers) -> EventFilter {
-        EventFilter { area: None, known }
+    /// A filter that knows this luggage, and that others requested this.
+    pub(super) fn of(known: Numbers, heard: Numbers) -> EventFilter {
+        EventFilter { area: None, known, heard }
     }
 
     /// Numbers of all luggage so far.
     pub(super) fn known(&self) -> &Numbers {
         &self.known
+    }
+
+    /// Numbers of luggage that others requested from the robots.
+    pub(super) fn heard(&self) -> &Numbers {
+        &self.heard
     }
 
     /// The area, if it is known.
@@ -51,14 +58,19 @@ impl EventFilter {
         Ok(())
     }
 
-    /// Records luggage that was requested from the robots directly.
+    /// Records luggage that is for others to request.
     pub(super) fn note(&mut self, luggage: u32) {
         self.known.insert(luggage);
     }
 
+    /// Records luggage that others requested from the robots.
+    pub(super) fn hear(&mut self, luggage: u32) {
+        self.heard.insert(luggage);
+    }
+
     /// True if luggage with this number was requested.
     pub(super) fn knows(&self, luggage: u32) -> bool {
-        self.known.contains(luggage)
+        self.known.contains(luggage) || self.heard.contains(luggage)
     }
 }
 
@@ -88,6 +100,10 @@ mod tests {
             assert_eq!(refused(&mut filter, luggage, from, to), Some(problem));
         }
         assert_eq!(refused(&mut filter, 3, (0, 0), (1, 1)), None, "a refused number is free");
+        filter.hear(4);
+        assert!(filter.knows(4));
+        assert_eq!(refused(&mut filter, 4, (0, 0), (1, 1)), None, "who began anew takes on what others requested");
+        assert_eq!(refused(&mut filter, 4, (0, 0), (1, 1)), Some(Problem::KnownLuggage));
     }
 
     #[test]

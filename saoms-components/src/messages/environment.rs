@@ -138,7 +138,15 @@ impl Validate for EventLuggage {
                 }
                 match Problem::of_request(&EventLuggage { robot: 0, ..self.clone() }, area) {
                     // Luggage that is known can be at its destination: on a robot that broke there.
-                    Err(Problem::There { .. }) if robot != 0 || validator.is_speaker(sender) => Ok(()),
+                    Err(Problem::There { .. })
+                        if robot != 0 || validator.is_speaker(sender) || validator.is_requester(sender) =>
+                    {
+                        Ok(())
+                    }
+                    Ok(()) => {
+                        validator.note_requester(sender);
+                        Ok(())
+                    }
                     judged => judged,
                 }
             }

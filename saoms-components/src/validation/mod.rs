@@ -24,6 +24,8 @@ pub(crate) use validate::{LONGEST_PERIOD, Validate, of_robot};
 pub(crate) struct MessageValidator {
     /// The component that speaks for each robot, as pairs of robot and component, sorted by robot.
     speakers: Vec<(u32, u32)>,
+    /// Components that requested luggage.
+    requesters: Vec<u32>,
     /// True if robots announce themselves, so that a message about any other robot is rejected.
     introduced: bool,
     /// True if the component hears the robots of a part of the map alone, so that others are not unknown.
@@ -36,6 +38,7 @@ pub(crate) struct MessageValidator {
 #[derive(Clone, Debug, Default, Field)]
 pub(crate) struct SpeakerMemory {
     speakers: Vec<SpeakerOfRobot>,
+    requesters: Vec<u32>,
     introduced: bool,
 }
 
@@ -49,13 +52,13 @@ impl MessageValidator {
     /// The speakers, for a component that goes on. Mistakes that were logged are logged once more.
     pub(crate) fn memory(&self) -> SpeakerMemory {
         let speakers = self.speakers.iter().map(|&(robot, sender)| SpeakerOfRobot { robot, sender });
-        SpeakerMemory { speakers: speakers.collect(), introduced: self.introduced }
+        SpeakerMemory { speakers: speakers.collect(), requesters: self.requesters.clone(), introduced: self.introduced }
     }
 
     /// Takes over the speakers that another one knew.
     pub(crate) fn restore(&mut self, memory: SpeakerMemory) {
         self.speakers = memory.speakers.iter().map(|known| (known.robot, known.sender)).collect();
-        self.introduced = memory.introduced;
+        (self.requesters, self.introduced) = (memory.requesters, memory.introduced);
     }
 
     /// True if the message is accepted. The area is checked if it is known.
@@ -119,6 +122,18 @@ impl MessageValidator {
     /// True if a component speaks for a robot.
     pub(crate) fn is_speaker(&self, sender: u32) -> bool {
         self.speakers.iter().any(|(_, speaker)| *speaker == sender)
+    }
+
+    /// Records that a component requested luggage.
+    pub(crate) fn note_requester(&mut self, sender: u32) {
+        if !self.requesters.contains(&sender) {
+            self.requesters.push(sender);
+        }
+    }
+
+    /// True if a component requested luggage before.
+    pub(crate) fn is_requester(&self, sender: u32) -> bool {
+        self.requesters.contains(&sender)
     }
 
     /// Records that robots announce themselves.

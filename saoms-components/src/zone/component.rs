@@ -38,8 +38,11 @@ const ASK_AGAIN: u64 = 40;
 /// Robots of its site enter a block only with a grant of the zone in which it lies. A grant is a message that holds
 /// until the robot says that it has left the block; no timeout ends it. So no two robots share a block or exchange
 /// their blocks, however late messages are and whichever component fails.
+///
+/// Without a `delay` it executes half a period after the start, between robots without one: its answers take them one
+/// period in place of two.
 #[derive(Debug, Class)]
-#[class(name = "saoms.Zone", periodic, reference("world": crate::hardware::Hardware, optional))]
+#[class(name = "saoms.Zone", periodic, alternates, reference("world": crate::hardware::Hardware, optional))]
 pub struct Zone {
     properties: ZoneProperties,
     hardware: HardwareReference,
@@ -384,13 +387,13 @@ impl Zone {
     }
 
     /// Says which robots stand in each other's way for good, so that a person takes one of them away.
-    fn name_deadlocks(&mut self, state: &State, context: &mut Context<'_>) {
+    fn name_deadlocks(&mut self, state: &mut State, context: &mut Context<'_>) {
         let waits = state.ledger.members().values().any(|member| member.waited > 0);
         if !waits && self.deadlocked.is_empty() && self.standing_still.is_empty() {
             return;
         }
         let moving = state.maneuvers.iter().flat_map(Maneuver::robots).collect();
-        let found = self.standing_still.count(&state.ledger, &moving);
+        let found = self.standing_still.count(&state.ledger, &mut state.ground, &moving);
         self.deadlocked.retain(|robot| {
             let lasts = found.iter().any(|deadlock| deadlock.first() == *robot);
             if !lasts {

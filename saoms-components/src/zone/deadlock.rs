@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+use super::ground::Ground;
 use super::ledger::{Ledger, Member};
 use crate::grid::Block;
 use crate::messages::Standing;
@@ -27,10 +28,11 @@ struct Standstill {
 
 impl StandingStill {
     /// Counts a round, in which these robots are in a maneuver. Gives the deadlocks of the zone, each once.
-    pub(super) fn count(&mut self, ledger: &Ledger, moving: &BTreeSet<u32>) -> Vec<Deadlock> {
+    pub(super) fn count(&mut self, ledger: &Ledger, ground: &mut Ground, moving: &BTreeSet<u32>) -> Vec<Deadlock> {
         let stands = |robot: &u32| ledger.member(*robot).filter(|member| is_at_rest(member) && member.wants_to_go());
         self.0.retain(|robot, still| stands(robot).is_some_and(|member| member.granted == still.granted));
-        let waits = |robot: &u32, member: &Member| member.waited > 0 && !moving.contains(robot);
+        // One that has to make way waits, too, although the round decides no more of it.
+        let waits = |robot: &u32, member: &Member| ledger.territory().contains(member.end()) && !moving.contains(robot);
         let waiting = ledger.members().iter().filter(|(robot, member)| stands(robot).is_some() && waits(robot, member));
         for (robot, member) in waiting {
             let still = self.0.entry(*robot).or_insert(Standstill { granted: member.granted, rounds: 0 });
@@ -38,7 +40,7 @@ impl StandingStill {
         }
         let mut found: Vec<Deadlock> = Vec::new();
         let stuck = self.0.keys().filter(|robot| self.is_stuck(**robot));
-        for deadlock in stuck.filter_map(|robot| self.deadlock_of(*robot, ledger, moving)) {
+        for deadlock in stuck.filter_map(|robot| self.deadlock_of(*robot, ledger, ground, moving)) {
             if found.iter().all(|one| one.first() != deadlock.first()) {
                 found.push(deadlock);
             }
@@ -57,7 +59,13 @@ impl StandingStill {
 
     /// The deadlock that a robot is in, or waits for; `None` if a robot in its way can still go on, is in a maneuver,
     /// or has to stay for now, as one that charges: it rests with a rank above those of all that wait for it.
-    fn deadlock_of(&self, robot: u32, ledger: &Ledger, moving: &BTreeSet<u32>) -> Option<Deadlock> {
+    fn deadlock_of(
+        &self,
+        robot: u32,
+        ledger: &Ledger,
+        ground: &mut Ground,
+        moving: &BTreeSet<u32>,
+    ) -> Option<Deadlock> {
         let mut chain: Vec<(u32, Block)> = Vec::new();
         let mut highest = 0;
         let mut next = robot;
@@ -79,7 +87,10 @@ impl StandingStill {
             if !self.is_stuck(next) {
                 return None;
             }
-            next = member.in_the_way?.1;
+            next = match member.in_the_way {
+                Some((_, other)) => other,
+                None => holder_ahead(member, ledger, ground)?,
+            };
         }
         let first = chain.iter().enumerate().min_by_key(|(_, (robot, _))| *robot).map_or(0, |(place, _)| place);
         chain.rotate_left(first);
@@ -99,6 +110,14 @@ impl Deadlock {
     pub(super) fn first(&self) -> u32 {
         self.robots.first().map_or(0, |(robot, _)| *robot)
     }
+}
+
+/// The robot on the block that leads a robot closest to its goal.
+fn holder_ahead(member: &Member, ledger: &Ledger, ground: &mut Ground) -> Option<u32> {
+    let (end, goal) = (member.end(), member.request.goal);
+    let blocks = end.neighbours().into_iter().filter(|block| ground.is_free(*block)).collect::<Vec<Block>>();
+    let best = blocks.into_iter().map(|block| (ground.cost(block, goal), block)).min()?;
+    (best.0 < ground.cost(end, goal)).then(|| ledger.holder(best.1)).flatten()
 }
 
 /// True if the robot holds one block, and would make way.

@@ -123,7 +123,7 @@ fn is_deadlock_behind(rank: u64, moving: &[u32]) -> bool {
     let mut found = Vec::new();
     for _ in 0..100 {
         site.round();
-        found = standing_still.count(&site.ledger, &moving);
+        found = standing_still.count(&site.ledger, &mut site.ground, &moving);
     }
     !found.is_empty()
 }
@@ -133,6 +133,35 @@ fn robots_behind_one_that_charges_are_in_no_deadlock() {
     assert!(is_deadlock_behind(0, &[]), "it rests, and cannot make way");
     assert!(is_deadlock_behind(6, &[]), "it would make way for the robot that waits");
     assert!(!is_deadlock_behind(7, &[]), "it stays until it is charged");
+}
+
+/// The deadlocks after some rounds with robots that stand on these blocks and go to these goals, the most urgent first.
+fn deadlocks(map: &str, width: u32, ways: &[(Block, Block)]) -> Vec<String> {
+    let mut site = Site::new(map, width);
+    let robots: Vec<u32> = (1..).take(ways.len()).collect();
+    for (robot, (from, goal)) in robots.iter().zip(ways) {
+        site.hold(*robot, &[*from], *goal, 100 - u64::from(*robot));
+    }
+    let mut standing_still = StandingStill::default();
+    let mut found = Vec::new();
+    for _ in 0..50 {
+        site.round();
+        robots.iter().for_each(|robot| site.arrive(*robot));
+        found = standing_still.count(&site.ledger, &mut site.ground, &BTreeSet::new());
+    }
+    found.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn all_robots_of_a_deadlock_are_named() {
+    let ring = [(at(0, 0), at(1, 0)), (at(1, 0), at(1, 1)), (at(1, 1), at(0, 1)), (at(0, 1), at(0, 0))];
+    let told = "robots 1 at (0,0), 2 at (1,0), 3 at (1,1), 4 at (0,1) are in each other's way, and cannot get past";
+    assert_eq!(deadlocks("..\n..", 2, &ring), [told]);
+    let line = [(at(0, 0), at(2, 0)), (at(1, 0), at(0, 0)), (at(2, 0), at(0, 0))];
+    let told = "robots 1 at (0,0), 2 at (1,0) are in each other's way, and cannot get past";
+    assert_eq!(deadlocks("...", 3, &line), [told]);
+    // With room beside them they get past each other.
+    assert_eq!(deadlocks("...\n...", 3, &line), [""; 0]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 
 use super::topic_list::TopicList;
 use super::topic_rename::TopicRenames;
-use crate::registry::PropertyDeclaration;
+use crate::registry::{ClassDeclaration, PropertyDeclaration};
 
 /// The task properties of a component: how it runs. All others take them from here.
 ///
@@ -120,6 +120,16 @@ static DECLARATIONS: LazyLock<Vec<PropertyDeclaration>> = LazyLock::new(|| {
     serde_json::from_str(TaskProperties::DECLARATION).expect("the task properties declare themselves in JSON")
 });
 
+/// The same for classes that alternate with others.
+static ALTERNATING: LazyLock<Vec<PropertyDeclaration>> = LazyLock::new(|| {
+    let mut all = DECLARATIONS.clone();
+    for delay in all.iter_mut().filter(|one| one.name == "delay") {
+        delay.default = None;
+        delay.doc.push_str(" By default half of the `period`.");
+    }
+    all
+});
+
 /// Least number of messages that may wait in a queue whose length nobody gave.
 const QUEUE: usize = 1024;
 
@@ -135,6 +145,15 @@ impl TaskProperties {
     /// The declarations of the task properties, in order.
     pub fn declarations() -> &'static [PropertyDeclaration] {
         &DECLARATIONS
+    }
+
+    /// The declarations of the task properties as they are for components of a class; none if it is passive.
+    pub fn declarations_of(class: &ClassDeclaration) -> &'static [PropertyDeclaration] {
+        match class {
+            _ if !class.is_periodic() => &[],
+            _ if class.alternates => &ALTERNATING,
+            _ => &DECLARATIONS,
+        }
     }
 
     /// Reads the values that a composite gives. Those that have no effect count as not given: empty texts, and what

@@ -50,6 +50,9 @@ pub struct ClassDeclaration {
     /// True if its components never run on the thread of the timer.
     #[serde(default)]
     pub apart: bool,
+    /// True if its components execute between those of others: half a period later, where a composite gives no `delay`.
+    #[serde(default)]
+    pub alternates: bool,
     /// True if its components can save their state after each execution.
     #[serde(default)]
     pub saves: bool,

@@ -59,6 +59,7 @@ pub(super) fn inherit(class: &mut ClassDeclaration, base: ClassDeclaration) -> R
     class.reacts |= base.reacts;
     class.stops |= base.stops;
     class.apart |= base.apart;
+    class.alternates |= base.alternates;
     class.knowledge = base.knowledge;
     class.loops = base.loops;
     class.extends.push(base.name);

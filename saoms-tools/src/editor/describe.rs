@@ -39,7 +39,7 @@ pub(crate) fn class(class: &RegisteredClass) -> String {
 
 /// Its own properties, then those of every task where it is one.
 pub(crate) fn properties(class: &ClassDeclaration) -> impl Iterator<Item = &PropertyDeclaration> {
-    let task = if class.is_periodic() { TaskProperties::declarations() } else { &[] };
+    let task = TaskProperties::declarations_of(class);
     let inherited = task.iter().filter(|one| class.property(&one.name).is_none());
     class.properties.iter().chain(inherited)
 }

@@ -156,7 +156,7 @@ fn described(class: &RegisteredClass) -> String {
     let own = declaration.properties.iter().map(|property| (property, preset(class, &property.name)));
     section(&mut text, "Properties", own.map(property_lines).collect());
     if declaration.is_periodic() {
-        let task = TaskProperties::declarations().iter();
+        let task = TaskProperties::declarations_of(declaration).iter();
         let task = task.filter(|property| declaration.property(&property.name).is_none());
         let lines = task.map(|property| property_lines((property, preset(class, &property.name)))).collect();
         section(&mut text, "Task properties", lines);

@@ -109,6 +109,7 @@ pub struct MasterEnvironment {
 struct MasterMemory {
     speakers: SpeakerMemory,
     known: Numbers,
+    heard: Numbers,
     open: OpenMemory,
     requests: Vec<EventLuggage>,
     loops: SavedLoops,
@@ -264,6 +265,7 @@ impl Component for MasterEnvironment {
         Ok(Saved::of(&MasterMemory {
             speakers: self.knowledge.validator.memory(),
             known: self.knowledge.filter.known().clone(),
+            heard: self.knowledge.filter.heard().clone(),
             open: self.knowledge.open.memory(),
             requests: self.requests.iter().map(|(_, request)| request.clone()).collect(),
             loops: self.loops.save(&self.knowledge)?,
@@ -274,7 +276,7 @@ impl Component for MasterEnvironment {
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         let Some(memory) = saved.read::<MasterMemory>()? else { return Ok(()) };
         self.knowledge.validator.restore(memory.speakers);
-        self.knowledge.filter = EventFilter::of(memory.known);
+        self.knowledge.filter = EventFilter::of(memory.known, memory.heard);
         self.knowledge.open = OpenLuggage::of(memory.open);
         self.knowledge.crew = Crew::with_jobs(self.knowledge.open.jobs(), self.knowledge.open.asked());
         self.requests = memory.requests.into_iter().map(|request| (Cause::default(), request)).collect();
@@ -440,9 +442,12 @@ impl MasterEnvironment {
             context.alert_over(GIVEN_UP, said.luggage);
         }
         if said.stage == LuggageStage::Request {
-            self.knowledge.filter.note(said.luggage);
+            self.knowledge.filter.hear(said.luggage);
             self.knowledge.hear_response(said, header.sent, context.now());
         } else if self.knowledge.filter.knows(said.luggage) {
+            if matches!(said.stage, LuggageStage::Delivered | LuggageStage::GivenUp) {
+                self.knowledge.filter.note(said.luggage);
+            }
             self.knowledge.hear_response(said, header.sent, context.now());
         } else {
             context.count("messages.ignored", 1);

@@ -48,6 +48,9 @@ impl Leg {
     /// A way to the charger that is older than any other one.
     pub(super) const OLDEST_TO_CHARGER: Leg = Leg { goal: None, urgency: Urgency::Energy, since: Time::START };
 
+    /// A way home that is older than any other one.
+    pub(super) const OLDEST_HOME: Leg = Leg { goal: None, urgency: Urgency::Home, since: Time::START };
+
     /// Priority of the way: the more urgent one is higher; of two equally urgent ways the older one. It does not change
     /// on the way: robots that swap their priorities would push each other back and forth.
     pub(super) fn priority(&self, robot: u32) -> Priority {

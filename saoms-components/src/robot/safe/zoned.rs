@@ -203,10 +203,16 @@ impl RobotKnowledge {
 
     /// Rank of its way. One that charges at its charger, and is not well charged yet, has that of the oldest way to a
     /// charger: if others on their way home, or to their chargers, sent it away, it would come back, and push them away
-    /// in its turn, and nobody would be charged.
+    /// in its turn, and nobody would be charged. One that is well charged, but not enough for what waits for it, has
+    /// that of the oldest way home.
     fn rank(&self) -> u64 {
-        let charges = self.charging && self.is_at_charger() && !self.is_well_charged() && !self.energy.gives_nothing;
-        let leg = if charges && self.leg.urgency == Urgency::None { Leg::OLDEST_TO_CHARGER } else { self.leg };
+        let rests = self.leg.urgency == Urgency::None;
+        let charges = rests && self.charging && self.is_at_charger() && !self.energy.gives_nothing;
+        let leg = match charges {
+            true if !self.is_well_charged() => Leg::OLDEST_TO_CHARGER,
+            true if !self.has_enough() => Leg::OLDEST_HOME,
+            _ => self.leg,
+        };
         leg.priority(self.number).rank
     }
 

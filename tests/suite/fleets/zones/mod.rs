@@ -6,6 +6,7 @@ mod corridor;
 mod entering;
 mod gone;
 mod out_of_reach;
+mod phase;
 mod words;
 
 use std::time::Duration;
