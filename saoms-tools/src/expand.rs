@@ -275,7 +275,7 @@ mod tests {
         let task = |more: &[(&str, &str)]| of(more, false);
         assert_eq!(task(&[]), "ID=a period=1s");
         assert_eq!(of(&[("delay", "500")], true), "ID=a period=1s");
-        assert_eq!(of(&[("delay", "0")], true), "ID=a period=1s delay=0ms");
+        assert_eq!(of(&[("delay", "0")], true), "ID=a period=1s delay=0s");
         assert_eq!(task(&[("delay", "0"), ("useJMS", "true")]), "ID=a period=1s");
         // Without it, a queue is as large as its topic needs.
         assert_eq!(task(&[("queue", "01024")]), "ID=a period=1s queue=1024");
