@@ -17,7 +17,6 @@ mod links;
 mod regions;
 #[cfg(test)]
 mod regions_tests;
-mod remembered;
 mod state;
 #[cfg(test)]
 mod tests;

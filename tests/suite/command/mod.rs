@@ -8,7 +8,6 @@ mod fmt;
 mod graph;
 mod history;
 mod log;
-mod memory;
 mod new;
 mod operation;
 mod options;

@@ -9,11 +9,16 @@ use saoms_api::host::cdr::{self, Reader};
 use saoms_api::host::{Arguments, Interface, Operation, ServiceCall};
 
 use crate::grid::Block;
-use crate::hardware::{Action, ActionKind, BEGIN, CANCEL, ENTER, Hardware, POLL, Progress, RETIRE};
+use crate::hardware::{Action, ActionKind, Hardware, Progress};
 submit! { RemoteProxy { interface: <dyn Hardware as Interface>::NAME, make: || Box::<HardwareProxy>::default() } }
 
-/// Other operations by their places in the interface.
+/// The operations by their places in the interface.
+const ENTER: Operation = 0;
 const AREA: Operation = 1;
+const BEGIN: Operation = 2;
+const POLL: Operation = 3;
+const CANCEL: Operation = 4;
+const RETIRE: Operation = 5;
 const BATTERY: Operation = 6;
 
 /// The proxy of hardware in another program.

@@ -99,8 +99,7 @@ impl ArrivedFrame {
             let (bytes, behind) = rest.split_at_checked(usize::try_from(size).ok()?)?;
             rest = behind;
             let (component, key) = (Arc::clone(&component), has_key.then_some(key));
-            let bytes = bytes.to_owned();
-            arrived.push((number, Arrived { component, to, key, sent, cause, bytes, origin: 0, number }));
+            arrived.push((number, Arrived { component, to, key, sent, cause, bytes: bytes.to_owned() }));
         }
         rest.is_empty().then_some(ArrivedFrame { program, schema, messages: arrived, cells })
     }

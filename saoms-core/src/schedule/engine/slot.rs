@@ -4,7 +4,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::commit::Uncommitted;
-use super::memory::SlotMemory;
 use super::overrun::{self, Decision};
 use crate::journal::Ring;
 use crate::report::Lateness;
@@ -70,8 +69,6 @@ pub(crate) struct Slot {
     /// Executions that kept something which is not committed.
     pub(crate) uncommitted: VecDeque<Uncommitted>,
     pub(crate) journal: Ring,
-    /// What outlives the program.
-    pub(crate) memory: SlotMemory,
     /// Specification of the component, the same as in its body.
     pub(crate) spec: Arc<ComponentSpec>,
     /// True if it has ever joined the fleet.
@@ -292,7 +289,6 @@ impl Slot {
             is_cut_off: false,
             network: NO_NETWORK,
             journal: Ring::default(),
-            memory: SlotMemory::default(),
             overrun_failure: None,
             name,
             cancelled,

@@ -125,22 +125,17 @@ impl Engine {
     }
 
     /// Leaves a message for a network that no component sent; an event once it is in the state folder, if there is one.
-    pub(super) fn put_outside(
-        &mut self,
-        network: u8,
-        by: &Arc<str>,
-        topic: TopicId,
-        message: &SharedMessage,
-        now: u64,
-    ) {
+    pub(super) fn put_outside(&mut self, network: u8, by: &Arc<str>, topic: TopicId, message: &SharedMessage) {
         if self.bus.kind(topic) != TopicKind::Event || !self.keeps_events() {
-            return self.put_on_network(network, by, topic, message, now);
+            return self.put_on_network(network, by, topic, message);
         }
         let change = self.event_to_keep(network, by, topic, message);
         let message = self.for_network(by, topic, message, Some(change.key));
         self.batches += 1;
         let batch = self.batches;
-        self.hand_over(NOBODY, batch, vec![change], now);
+        if let Commits::InStore(queue) = &self.commits {
+            queue.put(Batch { index: NOBODY, number: batch, changes: vec![change] });
+        }
         self.uncommitted += 1;
         self.networks.kept.outside.push_back(Outside { batch, network, topic, message });
     }
@@ -197,11 +192,10 @@ impl NetworkedFleet {
             memory.events.insert(topic, events);
             engine.found.forget(&entry);
         }
-        memory.received = engine.recall_received(&url);
         engine.found.forget(&own);
         let starts = Starts { origin: memory.origin, last: memory.start };
         let change = Change { component: own, key: 0, bytes: Some(cdr::encode(&starts).into()) };
-        queue.put(Batch { index: NOBODY, number: 0, changes: vec![change], later: None });
+        queue.put(Batch { index: NOBODY, number: 0, changes: vec![change] });
         self.shared.release(engine);
         Some(memory)
     }
@@ -232,7 +226,7 @@ impl NetworkedFleet {
             }
         }
         if !queue.has_failed() {
-            queue.put(Batch { index: NOBODY, number: 0, changes: all, later: None });
+            queue.put(Batch { index: NOBODY, number: 0, changes: all });
         }
     }
 }
