@@ -176,7 +176,7 @@ fn stated(task: &TaskProperties, alternates: bool) -> Vec<(SmolStr, PropertyValu
     let mut all = task.to_values();
     let required: Vec<_> = all.iter().filter(|(name, _)| is_required(name)).cloned().collect();
     let usual = TaskProperties::from_values(&required).map(|usual| {
-        let delay = if alternates { usual.period / 2 } else { usual.delay };
+        let delay = TaskProperties::usual_delay(usual.period, alternates);
         TaskProperties { delay, ..usual }.to_values()
     });
     let usual = usual.unwrap_or_default();

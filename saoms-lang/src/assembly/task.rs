@@ -156,6 +156,12 @@ impl TaskProperties {
         }
     }
 
+    /// The delay of a component for which the composite gives none, by its period and whether its class alternates with
+    /// others.
+    pub fn usual_delay(period: Duration, alternates: bool) -> Duration {
+        if alternates { period / 2 } else { Duration::ZERO }
+    }
+
     /// Reads the values that a composite gives. Those that have no effect count as not given: empty texts, and what
     /// only a restart needs. `renames` are those of `topicRename`, where somebody read that already.
     ///

@@ -54,8 +54,9 @@ impl Task<'_, '_> {
         let renames = renamed.iter().map(|one| (one.old.to_string(), one.new.to_string())).collect();
         match TaskProperties::read(self.given.of_task(&self.class.table), TopicRenames(renames)) {
             Ok(mut properties) => {
-                if self.class.class.declaration().alternates && self.given.get("delay").is_none() {
-                    properties.delay = properties.period / 2;
+                if self.given.get("delay").is_none() {
+                    let alternates = self.class.class.declaration().alternates;
+                    properties.delay = TaskProperties::usual_delay(properties.period, alternates);
                 }
                 self.deadline(&properties, report);
                 self.restart(&properties, report);
