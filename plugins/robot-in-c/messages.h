@@ -67,6 +67,11 @@
 
 #define PROGRESS JSON({"enumeration": "uint8", "values": {"RUNNING": 0, "DONE": 1, "FAILED": 2}})
 
+#define ACTION                                                                                              \
+    JSON({"name": "Action", "fields": [{"name": "kind", "type": {"enumeration": "uint8",                    \
+        "values": {"MOVE": 0, "COLLECT": 1, "DEPOSIT": 2}}}, {"name": "block", "type":)                     \
+    BLOCK JSON(}, {"name": "luggage", "type": "uint32"}]})
+
 #define HARDWARE                                                                                            \
     JSON({"name": "saoms.Hardware", "operations": [                                                         \
         {"name": "enter", "arguments": [{"name": "robot", "type": "uint32"}, {"name": "name", "type": "string"}, \
@@ -74,15 +79,15 @@
     JSON(}, {"name": "area", "arguments": [], "reply": {"name": "Area", "fields": [                         \
         {"name": "width", "type": "uint32"}, {"name": "height", "type": "uint32"},                          \
         {"name": "blocked", "type": {"sequence": "uint64"}}]}},                                             \
-        {"name": "begin", "arguments": [{"name": "robot", "type": "uint32"}, {"name": "action", "type":     \
-        {"name": "Action", "fields": [{"name": "kind", "type": {"enumeration": "uint8",                     \
-        "values": {"MOVE": 0, "COLLECT": 1, "DEPOSIT": 2}}}, {"name": "block", "type":)                     \
-    BLOCK JSON(}, {"name": "luggage", "type": "uint32"}]}}], "reply":) PROGRESS                             \
+        {"name": "begin", "arguments": [{"name": "robot", "type": "uint32"}, {"name": "action", "type":)    \
+    ACTION JSON(}], "reply":) PROGRESS                                                                      \
     JSON(}, {"name": "poll", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) PROGRESS         \
     JSON(}, {"name": "cancel", "arguments": [{"name": "robot", "type": "uint32"}], "reply": null},          \
         {"name": "retire", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) BLOCK JSON(},      \
         {"name": "battery", "arguments": [{"name": "robot", "type": "uint32"}], "reply": {"optional": "float64"}}, \
-        {"name": "isOnFloor", "arguments": [{"name": "robot", "type": "uint32"}], "reply": "bool"}]})
+        {"name": "isOnFloor", "arguments": [{"name": "robot", "type": "uint32"}], "reply": "bool"},         \
+        {"name": "recall", "arguments": [{"name": "robot", "type": "uint32"}, {"name": "action", "type":)   \
+    ACTION JSON(}], "reply": {"optional":) PROGRESS JSON(}}]})
 
 /* The operations of the hardware, by their places. */
 enum { ENTER = 0, BEGIN = 2, POLL = 3, RETIRE = 5, IS_ON_FLOOR = 7 };

@@ -181,7 +181,7 @@ unsafe extern "C" fn raise(state: *mut c_void, event: Bytes, error: Sink) -> Sta
 
 unsafe extern "C" fn goes_on(state: *mut c_void) -> u32 {
     // SAFETY: callers pass the state of their handle.
-    unsafe { with_host(state, 0, |host| u32::from(host.goes_on())) }
+    unsafe { with_host(state, 0, |host| u32::from(host.goes_on()) + u32::from(host.goes_on_from_earlier_program())) }
 }
 
 unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {

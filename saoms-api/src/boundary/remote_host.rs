@@ -293,6 +293,10 @@ impl Host for RemoteHost<'_> {
         get!(self.goes_on) != 0
     }
 
+    fn goes_on_from_earlier_program(&self) -> bool {
+        get!(self.goes_on) == 2
+    }
+
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
         let (view, mut error) = (stop::export(stop), Buffer::default());
         let status = get!(self.register_stop, &raw const view, sink(&mut error));

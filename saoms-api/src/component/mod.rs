@@ -345,7 +345,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
 /// | `apart` | it never runs on the thread of the timer, as code that may wait; nor do those that are wired to it |
 /// | `alternates` | without a `delay`, it begins half a period later: between those that begin at once, whose messages it answers |
-/// | `saves` | it [saves](Component::save) its state after each execution, for the one that a restart puts in its place |
+/// | `saves` | it [saves](Component::save) its state after each execution, for the one that a restart puts in its place, and for the next program with the same state folder |
 /// | `reacts` | it has a function [`react`](Component::react) for messages that trigger it |
 /// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |
 /// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite changes them, in their order |

@@ -353,6 +353,12 @@ impl<'a> Context<'a> {
         self.host.goes_on()
     }
 
+    /// True where [`goes_on`](Context::goes_on) is, if an earlier program saved that: what the component drives outside
+    /// of the program may have gone on meanwhile, or forgotten what it did.
+    pub fn goes_on_from_earlier_program(&self) -> bool {
+        self.host.goes_on_from_earlier_program()
+    }
+
     /// Registers a function that stops the component's hardware from any thread; the class declares `stops`. Only in
     /// `initialize`; each call adds one.
     ///

@@ -13,6 +13,10 @@ pub trait RunInvariants: Send {
     /// Asked before the first message of the topic.
     fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool;
 
+    /// Takes in that the run goes on from what an earlier program left, before the first message: what came before is
+    /// not known.
+    fn goes_on(&mut self) {}
+
     /// Takes in a message that a component of this program sent on such a topic.
     fn message(&mut self, topic: &str, message: &SharedMessage);
 

@@ -13,12 +13,14 @@
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`),
 //! - [`RouterClass`]: a class whose components are routers of networks,
 //! - [`RemoteProxy`]: how services of an interface are called in other programs without waiting,
+//! - [`ServiceEffects`]: which operations of an interface have effects outside of the program,
 //! - [`FailureNotice`]: what a fleet is told of a component that failed and lost what it knew.
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
 mod curves;
 mod dashboard;
+mod effects;
 mod events;
 mod failures;
 mod history;
@@ -34,6 +36,7 @@ pub use inventory::submit;
 pub use crate::time::DURATION_UNITS;
 pub use curves::{Curve, CurvesRegistration, RunCurves};
 pub use dashboard::DashboardView;
+pub use effects::ServiceEffects;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};
 pub use history::{

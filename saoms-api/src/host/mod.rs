@@ -135,6 +135,11 @@ pub trait Host {
     fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure>;
     /// See [`Context::kept`](crate::Context::kept).
     fn kept(&self) -> BTreeMap<u64, &[u8]>;
+    /// See [`Context::goes_on_from_earlier_program`](crate::Context::goes_on_from_earlier_program).
+    fn goes_on_from_earlier_program(&self) -> bool {
+        false
+    }
+
     /// See [`Context::kept_by_earlier_program`](crate::Context::kept_by_earlier_program).
     fn kept_by_earlier_program(&self) -> bool {
         false

@@ -222,6 +222,11 @@ impl SharedMessage {
         self.0.header
     }
 
+    /// For hosts: a number that all copies of one message have, and no other message while one of them lives.
+    pub fn address(&self) -> usize {
+        Arc::as_ptr(&self.0).cast::<()>().addr()
+    }
+
     /// For hosts: whether it was shared as a value. Bytes that came from elsewhere are to be checked before they are
     /// passed on.
     pub fn is_value(&self) -> bool {

@@ -1,3 +1,5 @@
+use std::fmt;
+
 use saoms_api::Field;
 
 use crate::grid::Block;
@@ -39,6 +41,18 @@ impl Action {
     /// Deposit of luggage.
     pub const fn deposit(luggage: u32, block: Block) -> Action {
         Action { kind: ActionKind::Deposit, block, luggage }
+    }
+}
+
+impl fmt::Display for Action {
+    /// What the robot does: `move to (3,1)`.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Action { kind, block, luggage } = self;
+        match kind {
+            ActionKind::Move => write!(formatter, "move to {block}"),
+            ActionKind::Collect => write!(formatter, "collect luggage {luggage} at {block}"),
+            ActionKind::Deposit => write!(formatter, "deposit luggage {luggage} at {block}"),
+        }
     }
 }
 

@@ -8,6 +8,8 @@ mod action;
 mod area;
 mod proxy;
 
+use saoms_api::extension::{ServiceEffects, submit};
+use saoms_api::host::{Interface, Operation, cdr};
 use saoms_api::{Context, Failure, interface};
 
 use crate::grid::Block;
@@ -49,5 +51,31 @@ pub trait Hardware {
     fn is_on_floor(&mut self, context: &mut Context<'_>, robot: u32) -> Result<bool, Failure> {
         let _ = (context, robot);
         Ok(true)
+    }
+
+    /// What became of an action of which the robot knows that an earlier program began it, or was about to; before
+    /// `enter`, after a restart of the program. `None`, as by itself, if the hardware does not know: then a person is
+    /// asked. `Failed` if it did not begin.
+    fn recall(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Option<Progress>, Failure> {
+        let _ = (context, robot, action);
+        Ok(None)
+    }
+}
+
+/// The operations by their places in the interface.
+const ENTER: Operation = 0;
+const BEGIN: Operation = 2;
+const POLL: Operation = 3;
+const CANCEL: Operation = 4;
+const RETIRE: Operation = 5;
+
+submit! {
+    ServiceEffects {
+        interface: <dyn Hardware as Interface>::NAME,
+        begin: BEGIN,
+        poll: POLL,
+        end: &[ENTER, CANCEL, RETIRE],
+        waiting: || cdr::encode(&Progress::Running),
+        failed: || cdr::encode(&Progress::Failed),
     }
 }

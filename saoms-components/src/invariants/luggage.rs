@@ -45,7 +45,7 @@ impl Pieces {
         self.luggage().filter_map(|piece| Some(piece.delivered?.since(piece.requested).as_secs_f64()))
     }
 
-    pub(super) fn hear(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {
+    pub(super) fn hear(&mut self, message: &SharedMessage, goes_on: bool, finder: &mut Finder<'_>) {
         let Some(EventLuggage { robot, luggage, stage, .. }) = message.get::<EventLuggage>().cloned() else { return };
         match stage {
             LuggageStage::Request => self.request(luggage, finder.at),
@@ -56,6 +56,10 @@ impl Pieces {
                     true => (job_name(luggage), "does", "done"),
                     false => (job_name(luggage), "delivers", "delivered"),
                 };
+                if goes_on {
+                    // It was asked for before.
+                    self.request(luggage, finder.at);
+                }
                 match self.all.get_mut(&luggage) {
                     None => finder.note(ONCE, format!("robot {robot} {does} {what}, which nobody asked for")),
                     Some(Piece { delivered: Some(before), .. }) => {

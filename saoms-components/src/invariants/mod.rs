@@ -71,6 +71,8 @@ struct FleetInvariants {
     /// Of all sites.
     tide: Tide,
     looked: Time,
+    /// True if an earlier program began the run: luggage may have been asked for there.
+    goes_on: bool,
     found: Vec<Violation>,
     measures: Vec<Measure>,
 }
@@ -147,6 +149,10 @@ impl RunInvariants for FleetInvariants {
         true
     }
 
+    fn goes_on(&mut self) {
+        self.goes_on = true;
+    }
+
     fn message(&mut self, topic: &str, message: &SharedMessage) {
         let Some((site, content)) = self.topics.get(topic) else { return };
         let at = message.header().sent;
@@ -163,7 +169,7 @@ impl RunInvariants for FleetInvariants {
             Content::Collision => robots::hear_collision(message, &mut finder),
             Content::Luggage => {
                 robots.hear_luggage(message, at);
-                pieces.hear(message, &mut finder);
+                pieces.hear(message, self.goes_on, &mut finder);
             }
             Content::Fault => {
                 self.tide.rise(at);

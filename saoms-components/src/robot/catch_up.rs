@@ -13,6 +13,9 @@ use super::{Policy, RobotKnowledge};
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
 
+/// The kind of the alert about an action of which nobody knows whether it was done.
+const OPEN_ACTION: &str = "open_action";
+
 impl RobotKnowledge {
     /// Finds out what the hardware did and does; `false` as long as it does not know.
     pub(super) fn catch_up(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
@@ -26,7 +29,7 @@ impl RobotKnowledge {
             let Reply::Answer(map) = self.hardware.area(context)? else { return Ok(false) };
             self.routes.learn_again(map, self.charge_block, &self.lists.charging_places);
         }
-        let Reply::Answer(progress) = self.hardware.ask(context, self.number)? else { return Ok(false) };
+        let Some(progress) = self.progress_meanwhile(context)? else { return Ok(false) };
         let running = self.hardware.running();
         if progress == Progress::Running {
             let known = running.filter(|action| !self.may_have_begun_after(*action));
@@ -58,6 +61,42 @@ impl RobotKnowledge {
             self.moved_to(block);
         }
         Ok(true)
+    }
+
+    /// Progress of what the hardware did; `None` as long as it is not known.
+    fn progress_meanwhile(&mut self, context: &mut Context<'_>) -> Result<Option<Progress>, Failure> {
+        let known = match self.hardware.recall(context, self.number)? {
+            None => self.hardware.ask(context, self.number)?,
+            Some(Reply::Later) => Reply::Later,
+            Some(Reply::Answer(Some(progress))) => Reply::Answer(progress),
+            Some(Reply::Answer(None)) => self.ask_a_person(context),
+        };
+        Ok(match known {
+            Reply::Answer(progress) => Some(progress),
+            Reply::Later => None,
+        })
+    }
+
+    /// Asks a person what became of an action that an earlier program began.
+    fn ask_a_person(&mut self, context: &mut Context<'_>) -> Reply<Progress> {
+        let Some(progress) = self.hardware.told.take() else {
+            if !std::mem::replace(&mut self.hardware.asks_a_person, true) {
+                let what = self.hardware.running().map(|action| action.to_string()).unwrap_or_default();
+                let name = context.name().to_owned();
+                context.alert(
+                    OPEN_ACTION,
+                    "",
+                    format_args!(
+                        "the program ended while the robot was about to {what}, and its hardware does not know whether \
+                         it did: look, and say `saoms call {name}.settle done=true`, or `done=false` if it did not"
+                    ),
+                );
+            }
+            return Reply::Later;
+        };
+        self.hardware.asks_a_person = false;
+        context.alert_over(OPEN_ACTION, "");
+        Reply::Answer(progress)
     }
 
     fn take_in_late(

@@ -28,10 +28,10 @@ mod upkeep;
 mod zone_client;
 
 use saoms_api::host::prefetch;
-use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Subscription, Time};
+use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Subscription, Time, interface};
 
 use crate::console::Timestamp;
-use crate::hardware::Hardware;
+use crate::hardware::{Hardware, Progress};
 use crate::messages::{
     ASSIGNMENT, COLLISION, DRAIN, Drain, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, LEASE, OUTAGE, Outage, POSITION,
     PRESENCE, ROBOT_LIST, TERRITORY, VISIT,
@@ -90,6 +90,7 @@ const ASSISTANCE: &str = "assistance";
     publishes(COLLISION, GRANT_REQUEST, PRESENCE, LEASE),
     subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT, TERRITORY, GRANT),
     reference("world": Hardware, optional),
+    service("operator": RobotOperator),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
     also("robot.Robot002", number = 2),
@@ -247,6 +248,24 @@ impl Component for Robot {
 
     fn status(&self) -> Vec<(String, ReportValue)> {
         self.knowledge.status()
+    }
+}
+
+/// What a person tells a robot.
+#[interface(name = "saoms.RobotOperator")]
+pub trait RobotOperator {
+    /// Says whether the action was done of which the alert `open_action` tells.
+    fn settle(&mut self, context: &mut Context<'_>, done: bool) -> Result<(), Failure>;
+}
+
+impl RobotOperator for Robot {
+    fn settle(&mut self, _: &mut Context<'_>, done: bool) -> Result<(), Failure> {
+        let hardware = &mut self.knowledge.hardware;
+        if !hardware.asks_a_person {
+            return Err(Failure::new("the robot does not ask what became of an action: it knows that itself"));
+        }
+        hardware.told = Some(if done { Progress::Done } else { Progress::Failed });
+        Ok(())
     }
 }
 

@@ -160,6 +160,15 @@ impl Hardware for World {
         self.referee.retire(robot)
     }
 
+    fn recall(&mut self, context: &mut Context<'_>, robot: u32, _action: Action) -> Result<Option<Progress>, Failure> {
+        // One that does not know the robot was started anew. Otherwise it knows what the robot began last, which may be
+        // another action than that of which the robot knows.
+        if self.referee.block(robot).is_err() {
+            return Ok(None);
+        }
+        self.poll(context, robot).map(Some)
+    }
+
     fn is_on_floor(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<bool, Failure> {
         Ok(self.referee.is_on_floor(robot))
     }

@@ -17,21 +17,42 @@ type Fleet = State<Arc<ControlledFleet>>;
 /// Time for which an answer is waited for.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+/// Time for which a commit is waited for.
+const COMMIT_PATIENCE: Duration = Duration::from_secs(5);
+
 /// Gives an order, and waits for its answer.
 pub(super) async fn give(fleet: Arc<ControlledFleet>, order: Order) -> Answer {
-    let ticket = waiting(move || fleet.handle.order(order, None)).await?.map_err(Refusal::unprocessable)?;
-    answered(ticket).await
+    // Whoever stops something hears at once that it stops, whatever the disk does.
+    let commits = !matches!(order, Order::EmergencyStop { .. });
+    if let Some(refusal) = fleet.handle.refusal_of_work().filter(|_| matches!(order, Order::Publish { .. })) {
+        return Err(Refusal::unprocessable(refusal));
+    }
+    let given = Arc::clone(&fleet);
+    let ticket = waiting(move || given.handle.order(order, None)).await?.map_err(Refusal::unprocessable)?;
+    answered(ticket, commits.then_some(fleet)).await
 }
 
-async fn answered(ticket: OrderTicket) -> Answer {
+async fn answered(ticket: OrderTicket, committed: Option<Arc<ControlledFleet>>) -> Answer {
     let reply = waiting(move || ticket.wait(PATIENCE)).await?.map_err(Refusal::unprocessable)?;
+    if let Some(fleet) = committed {
+        commit(fleet).await?;
+    }
     json_text(json!({"reply": reply}).to_string())
 }
 
+/// Waits until what is answered outlives the program.
+pub(super) async fn commit(fleet: Arc<ControlledFleet>) -> Result<(), Refusal> {
+    waiting(move || fleet.handle.commit(COMMIT_PATIENCE)).await?.map_err(Refusal::unprocessable)
+}
+
 pub(super) async fn send(State(fleet): Fleet, line: String) -> Answer {
-    match waiting(move || (fleet.send)(&line)).await?.map_err(Refusal::unprocessable)? {
-        SentLine::Events(count) => json_text(json!({"events": count}).to_string()),
-        SentLine::Order(ticket) => answered(ticket).await,
+    let sent = Arc::clone(&fleet);
+    match waiting(move || (sent.send)(&line)).await?.map_err(Refusal::unprocessable)? {
+        SentLine::Events(count) => {
+            commit(fleet).await?;
+            json_text(json!({"events": count}).to_string())
+        }
+        SentLine::Order(ticket) => answered(ticket, Some(fleet)).await,
     }
 }
 

@@ -88,6 +88,18 @@ impl EventLog {
         !readers.map(|(place, _)| place).any(is_half_full)
     }
 
+    /// The messages that wait for a reader.
+    pub(super) fn unread(&self, place: u32) -> impl Iterator<Item = &SharedMessage> {
+        let (waiting, _) = self.waiting(place);
+        self.messages.range(self.messages.len().saturating_sub(waiting as usize)..)
+    }
+
+    /// True if messages wait for a reader.
+    pub(super) fn has_unread(&self) -> bool {
+        let end = self.end();
+        self.readers.iter().any(|reader| reader.queue > 0 && reader.next != end)
+    }
+
     /// Users that leave change nothing: what they sent still waits.
     pub(super) fn set_users(&mut self, users: usize) {
         self.grown = self.grown.max(TaskProperties::default_queue(users) as u64);

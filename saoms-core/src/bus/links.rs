@@ -32,7 +32,12 @@ impl Readers {
         !self.links.is_empty()
     }
 
-    fn link(&self, number: u32) -> Option<TopicId> {
+    /// The readers: the number, the component and the position of each.
+    pub(super) fn positions(&self) -> impl Iterator<Item = (u32, u32, ReadPosition)> {
+        self.all.iter().map(|(number, (component, position))| (*number, *component, *position))
+    }
+
+    pub(super) fn link(&self, number: u32) -> Option<TopicId> {
         let place = self.links.binary_search_by_key(&number, |link| link.number).ok()?;
         Some(self.links[place].topic)
     }

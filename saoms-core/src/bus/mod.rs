@@ -17,6 +17,7 @@ mod links;
 mod regions;
 #[cfg(test)]
 mod regions_tests;
+mod remembered;
 mod state;
 #[cfg(test)]
 mod tests;

@@ -249,6 +249,16 @@ impl RegionReaders {
         }
     }
 
+    /// The events that wait for a reader.
+    pub(super) fn unread(&self, place: u32) -> impl Iterator<Item = &SharedMessage> {
+        self.readers[place as usize].events.iter()
+    }
+
+    /// True if events wait for a reader.
+    pub(super) fn has_unread(&self) -> bool {
+        self.readers.iter().any(|reader| !reader.events.is_empty())
+    }
+
     /// True if a collection has anything to do.
     #[inline]
     pub(super) fn is_stirred(&self, place: u32) -> bool {

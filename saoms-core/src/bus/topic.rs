@@ -315,6 +315,30 @@ impl BusTopic {
         }
     }
 
+    /// True if events wait for a reader.
+    pub(super) fn has_unread(&self) -> bool {
+        self.log().is_some_and(EventLog::has_unread)
+            || self.regions.as_ref().is_some_and(|regions| regions.has_unread())
+    }
+
+    pub(super) fn log(&self) -> Option<&EventLog> {
+        match &self.store {
+            Store::Event(log) => Some(log),
+            Store::State(_) => None,
+        }
+    }
+
+    pub(super) fn regions(&self) -> Option<&RegionReaders> {
+        self.regions.as_deref()
+    }
+
+    /// Appends the retained messages that changed after the `since`-th change.
+    pub(super) fn changed_states(&self, since: &mut u64, messages: &mut Vec<SharedMessage>) {
+        if let Some(table) = self.store.table() {
+            table.collect(since, messages);
+        }
+    }
+
     /// The retained messages, the oldest first.
     pub(super) fn retained(&self) -> Vec<SharedMessage> {
         let mut messages = Vec::new();

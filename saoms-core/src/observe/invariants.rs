@@ -31,6 +31,11 @@ impl InvariantWatch {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The run goes on from what an earlier program left.
+    pub fn goes_on(&self) {
+        self.all().iter_mut().for_each(|one| one.goes_on());
+    }
+
     /// The violations since the last call.
     pub fn violations(&self) -> Vec<Violation> {
         self.all().iter_mut().flat_map(|one| one.violations()).collect()

@@ -14,5 +14,5 @@ pub use merge::{MergeError, merge};
 pub use part::{NodeReport, PartOfFleet};
 pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, RunStatus, Votes};
 pub use sections::Sections;
-pub(crate) use sections::json;
+pub(crate) use sections::{PartOfReport, json};
 pub use standstill::{Standstill, Waiting};

@@ -1,4 +1,4 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use saoms_api::ReportValue;
 use saoms_api::extension::RunSummary;
@@ -8,6 +8,16 @@ use serde_json::{Map, Value};
 #[derive(Clone, Debug)]
 pub struct Sections {
     entries: BTreeMap<String, Entry>,
+    /// The paths that changed since they were asked for, where somebody asks.
+    changed: Option<BTreeSet<String>>,
+}
+
+/// What stands at a path, for the next program.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PartOfReport {
+    /// True if it was counted.
+    pub(crate) is_count: bool,
+    pub(crate) value: Value,
 }
 
 #[derive(Clone, Debug)]
@@ -43,12 +53,49 @@ impl Sections {
     /// The counts that every report has, all at zero.
     pub fn with_registered_counts() -> Sections {
         let counts = RunSummary::linked().into_iter().flat_map(|summary| summary.counts);
-        Sections { entries: counts.map(|path| ((*path).to_owned(), Entry::Count(0))).collect() }
+        let entries = counts.map(|path| ((*path).to_owned(), Entry::Count(0))).collect();
+        Sections { entries, changed: None }
+    }
+
+    /// Notes from now on what changes.
+    pub(crate) fn note_changes(&mut self) {
+        self.changed = Some(BTreeSet::new());
+    }
+
+    /// What changed since this was asked last.
+    pub(crate) fn take_changed(&mut self) -> Vec<(String, PartOfReport)> {
+        let changed = self.changed.as_mut().map(std::mem::take).unwrap_or_default();
+        let part = |path: String| {
+            let part = match self.entries.get(&path)? {
+                Entry::Count(count) => PartOfReport { is_count: true, value: Value::from(*count) },
+                Entry::Value(value) => PartOfReport { is_count: false, value: json(value) },
+            };
+            Some((path, part))
+        };
+        changed.into_iter().filter_map(part).collect()
+    }
+
+    /// Puts back what an earlier program had.
+    pub(crate) fn recall(&mut self, path: String, part: PartOfReport) {
+        let entry = match part.value.as_i64().filter(|_| part.is_count) {
+            Some(count) => Entry::Count(count),
+            None => Entry::Value(value_of(part.value)),
+        };
+        self.entries.insert(path, entry);
+    }
+
+    fn note(&mut self, path: &str) {
+        if let Some(changed) = &mut self.changed
+            && !changed.contains(path)
+        {
+            changed.insert(path.to_owned());
+        }
     }
 
     /// Sets a value; the last one counts. False if the report has no room for it.
     #[must_use = "what is left out is told"]
     pub fn set(&mut self, path: &str, value: ReportValue) -> bool {
+        self.note(path);
         match self.entries.get_mut(path) {
             Some(entry) => {
                 *entry = Entry::Value(value);
@@ -69,6 +116,7 @@ impl Sections {
     /// Adds to a count. A whole number that was [`set`](Sections::set) is counted on from; any other value gives way to
     /// the count. False if the report has no room for it.
     pub fn add(&mut self, path: &str, more: i64) -> bool {
+        self.note(path);
         let Some(entry) = self.entries.get_mut(path) else { return self.insert(path, Entry::Count(more)) };
         let before = match entry {
             Entry::Count(count) | Entry::Value(ReportValue::Integer(count)) => *count,
@@ -125,6 +173,23 @@ fn insert(object: &mut Map<String, Value>, path: &str, value: Value) {
     }
     if let Value::Object(inner) = inner {
         insert(inner, rest, value);
+    }
+}
+
+/// The value of a JSON, as [`json`] makes it.
+fn value_of(value: Value) -> ReportValue {
+    match value {
+        Value::Null => ReportValue::Null,
+        Value::Bool(value) => ReportValue::Bool(value),
+        Value::Number(number) => match number.as_i64() {
+            Some(value) => ReportValue::Integer(value),
+            None => ReportValue::Float(number.as_f64().unwrap_or(f64::NAN)),
+        },
+        Value::String(text) => ReportValue::Text(text),
+        Value::Array(values) => ReportValue::List(values.into_iter().map(value_of).collect()),
+        Value::Object(fields) => {
+            ReportValue::Map(fields.into_iter().map(|(name, value)| (name, value_of(value))).collect())
+        }
     }
 }
 

@@ -109,8 +109,12 @@ impl RunningFleet {
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
         before(&fleet.handle)?;
+        let remembered = shared.look(|engine| {
+            let recalled = engine.memory.recalled.as_ref();
+            recalled.map(|recalled| recalled.components().map(str::to_owned).collect::<Vec<_>>())
+        });
         change::apply(shared, assembly)?;
-        store_writer::note_unused(shared);
+        store_writer::note_unused(shared, &remembered.unwrap_or_default());
         Ok(fleet)
     }
 
@@ -148,7 +152,7 @@ impl RunningFleet {
         let shared = &self.handle.shared;
         let mut report = shared.lock().report(&shared.sections());
         if let Some(part) = &mut report.part {
-            let passed = Duration::from_nanos(shared.clock.now_without_pause());
+            let passed = Duration::from_nanos(shared.clock.now_without_pause().saturating_sub(shared.clock.origin()));
             let began = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().saturating_sub(passed);
             part.began_us = u64::try_from(began.as_micros()).unwrap_or(u64::MAX);
         }

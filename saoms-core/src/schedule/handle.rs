@@ -1,6 +1,8 @@
+mod commit;
+
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use saoms_api::event::EventCall;
@@ -9,6 +11,7 @@ use saoms_api::{Cause, Level, Time};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
 
+pub use self::commit::{NotCommitted, Together};
 use super::change::{self, ChangeError, Changed, StartError, Takeover};
 use super::drive::store_writer;
 use super::engine::RunPhase;
@@ -241,6 +244,52 @@ impl Handle {
     /// The system cannot create a thread.
     pub fn use_store(&self, store: Store) -> Result<(), StartError> {
         store_writer::use_store(&self.shared, store).map_err(StartError::Thread)
+    }
+
+    /// Waits until all that has happened so far is committed, so that it outlives the program; at once where there is
+    /// no state folder. Whoever answers that something is accepted waits for this first.
+    ///
+    /// # Errors
+    /// It is not committed within this time, or never will be.
+    pub fn commit(&self, patience: Duration) -> Result<(), NotCommitted> {
+        commit::wait(&self.shared, patience)
+    }
+
+    /// Why no new work is accepted, if that is so: the disk of the state folder is full.
+    pub fn refusal_of_work(&self) -> Option<String> {
+        self.shared.store.get().and_then(|queue| queue.refusal_of_work())
+    }
+
+    /// Lets changes that belong together be in the memory together: until the returned value is dropped, there is no
+    /// state of the fleet that a later program could go on from. It is for a moment.
+    pub fn together(&self) -> Together {
+        commit::together(&self.shared)
+    }
+
+    /// The time of the run from which this program goes on, if it does so from a state folder.
+    pub fn recalled(&self) -> Option<Time> {
+        Some(self.shared.clock.origin()).filter(|origin| *origin > 0).map(Time::from_nanos)
+    }
+
+    /// A number that outlives the program, under a name: 0 at first.
+    pub fn counter(&self, name: &str) -> u64 {
+        self.shared.look(|engine| engine.counter(name))
+    }
+
+    /// Sets a [`counter`](Handle::counter).
+    pub fn set_counter(&self, name: &str, value: u64) {
+        let mut engine = self.shared.lock();
+        engine.set_counter(name, value);
+        self.shared.release(engine);
+    }
+
+    /// Has a number that others count on outlive the program, under a name: it counts on from where it was.
+    pub fn share_counter(&self, name: &str, counter: &Arc<AtomicU32>) {
+        let mut engine = self.shared.lock();
+        if let Some(before) = engine.share_counter(name, Arc::clone(counter)) {
+            counter.store(u32::try_from(before).unwrap_or(u32::MAX), Ordering::Relaxed);
+        }
+        self.shared.release(engine);
     }
 
     /// Adds to a count of the report.

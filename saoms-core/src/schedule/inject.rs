@@ -1,6 +1,7 @@
 //! Messages from outside the fleet.
 
 mod error;
+mod outliving;
 #[cfg(test)]
 mod tests;
 
@@ -293,6 +294,9 @@ fn add(shared: &Shared, at: Option<Time>, due: Due) {
 impl Engine {
     fn add_due(&mut self, now: u64, at: Option<Time>, due: Due) {
         let when = at.map_or(0, Time::as_nanos).max(self.next_instant(now));
+        if !matches!(due, Due::Commit { .. }) {
+            self.note_difference(now);
+        }
         self.injections.add(when, due);
         self.look_at = self.look_at.min(when);
         self.wake |= when < self.roles.asleep_until;
@@ -430,7 +434,7 @@ impl Engine {
             let sent = SentMessage { topic: name, component, message: message.clone(), is_of_other: false };
             self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
         }
-        self.put_on_networks(by, topic, &message);
+        self.put_on_networks(by, topic, &message, time);
         self.send(topic, message, time);
     }
 

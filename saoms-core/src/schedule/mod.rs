@@ -33,7 +33,7 @@ mod why;
 
 pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
 pub use fleet::RunningFleet;
-pub use handle::{Handle, Hold};
+pub use handle::{Handle, Hold, NotCommitted, Together};
 pub use hold::{HoldError, Speed};
 pub use inject::{InjectError, InjectedContent, Injection, is_from_outside};
 pub use members::UnknownComponent;

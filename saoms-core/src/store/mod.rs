@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub(crate) use contents::{Change, Contents, Entries};
 use disk::{DiskFile, Opened};
 use log::Log;
-pub(crate) use thread::{Batch, StoreEvents, StoreQueue, write};
+pub(crate) use thread::{Batch, LaterChanges, StoreEvents, StoreQueue, write};
 
 /// A store that is open, and not yet used by a fleet.
 ///

@@ -245,7 +245,7 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
         let file = TestFile(Arc::new(Mutex::new(disk)));
         let (queue, told) = (StoreQueue::default(), Told::default());
         for (number, kept) in (1..).zip(kept) {
-            queue.put(Batch { index: 0, number, changes: changes(kept) });
+            queue.put(Batch { index: 0, number, changes: changes(kept), later: None });
         }
         queue.close();
         Writer { log: file.clone().log(), queue: &queue, events: &told, told: None }.write();
@@ -272,7 +272,7 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
 fn a_full_disk_is_tried_again_until_it_has_space() {
     let file = TestFile(Arc::new(Mutex::new(TestDisk { space: Some(50), ..TestDisk::default() })));
     let (queue, told) = (StoreQueue::default(), Told::default());
-    queue.put(Batch { index: 3, number: 1, changes: changes("A 1 one") });
+    queue.put(Batch { index: 3, number: 1, changes: changes("A 1 one"), later: None });
     std::thread::scope(|scope| {
         scope.spawn(|| Writer { log: file.clone().log(), queue: &queue, events: &told, told: None }.write());
         while told.0.lock().unwrap().len() < 2 {

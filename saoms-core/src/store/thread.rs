@@ -1,20 +1,29 @@
+use std::fmt;
 use std::io;
 use std::mem;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 
 use super::log::{CommitError, Log, LogFile};
-use super::{Change, Store, group};
+use super::{Change, Contents, Store, group};
 
-/// What a component kept in one execution.
-#[derive(Debug)]
+/// What is committed together.
+#[derive(Debug, Default)]
 pub(crate) struct Batch {
-    /// The component.
+    /// Whose it is.
     pub(crate) index: u32,
-    /// Number of the batch, for that component.
+    /// Number of the batch, for whose it is.
     pub(crate) number: u64,
     pub(crate) changes: Vec<Change>,
+    /// More changes, which the thread makes, so that nobody else spends time on that.
+    pub(crate) later: Option<Box<dyn LaterChanges>>,
+}
+
+/// Changes that are made of something when they are about to be written.
+pub(crate) trait LaterChanges: fmt::Debug + Send {
+    /// Adds those by which it differs from what the store has.
+    fn add_to(&self, changes: &mut Vec<Change>, known: &Contents);
 }
 
 /// Who hears of the work of the thread.
@@ -37,6 +46,8 @@ pub(crate) struct StoreQueue {
     wake: Condvar,
     /// Number of bytes of all that is not on the disk, also of what is being written.
     bytes: AtomicUsize,
+    /// True while the disk has no space beyond what is reserved.
+    lacks_space: AtomicBool,
     failure: OnceLock<String>,
 }
 
@@ -50,6 +61,8 @@ struct Waiting {
 const MOST_WAITING: usize = 64 << 20;
 const ALMOST_FULL: &str = "the disk of the state folder is almost full: make space, before components that keep something have to wait for it";
 const FULL: &str = "the disk of the state folder is full: make space; components that keep something wait for it";
+const NO_NEW_WORK: &str =
+    "the disk of the state folder is full, so that no new work is accepted: make space, and try again";
 /// Time after which the file of a log to which nothing is added is looked at.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(5);
 /// Pause before a full disk is tried again.
@@ -70,6 +83,30 @@ impl StoreQueue {
     /// True once nothing will be committed any more.
     pub(crate) fn has_failed(&self) -> bool {
         self.failure.get().is_some()
+    }
+
+    /// Why nothing will be committed any more, if that is so.
+    pub(crate) fn failure(&self) -> Option<String> {
+        self.failure.get().cloned()
+    }
+
+    /// Why no new work may be accepted, if that is so: what is at work already needs what is reserved of the disk.
+    pub(crate) fn refusal_of_work(&self) -> Option<String> {
+        let lacks_space = self.lacks_space.load(Ordering::Relaxed);
+        self.refusal().or_else(|| lacks_space.then(|| NO_NEW_WORK.to_owned()))
+    }
+
+    /// Counts bytes that will be handed over.
+    pub(crate) fn announce(&self, changes: &[Change]) -> usize {
+        let bytes = changes.iter().map(size_of_change).sum();
+        self.bytes.fetch_add(bytes, Ordering::Relaxed);
+        bytes
+    }
+
+    /// Hands a batch over whose changes were announced.
+    pub(crate) fn put_announced(&self, batch: Batch) {
+        self.lock().batches.push(batch);
+        self.wake.notify_one();
     }
 
     /// Why nothing more can be kept, if that is so.
@@ -97,8 +134,11 @@ impl StoreQueue {
 }
 
 fn size(batch: &Batch) -> usize {
-    let bytes = |change: &Change| change.bytes.as_ref().map_or(0, |bytes| bytes.len());
-    batch.changes.iter().map(|change| bytes(change) + change.component.len() + mem::size_of::<u64>()).sum()
+    batch.changes.iter().map(size_of_change).sum()
+}
+
+fn size_of_change(change: &Change) -> usize {
+    change.bytes.as_ref().map_or(0, |bytes| bytes.len()) + change.component.len() + mem::size_of::<u64>()
 }
 
 /// Writes what comes through the queue, until that is closed. All that came while the disk was busy is one group.
@@ -151,7 +191,13 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
     fn commit(&mut self, mut batches: Vec<Batch>) -> Result<(), ()> {
         let numbers: Vec<(u32, u64)> = batches.iter().map(|batch| (batch.index, batch.number)).collect();
         let bytes: usize = batches.iter().map(size).sum();
-        let changes: Vec<Change> = batches.iter_mut().flat_map(|batch| mem::take(&mut batch.changes)).collect();
+        let mut changes: Vec<Change> = Vec::new();
+        for batch in &mut batches {
+            changes.append(&mut batch.changes);
+            if let Some(later) = batch.later.take() {
+                later.add_to(&mut changes, self.log.contents());
+            }
+        }
         let error = loop {
             match self.log.commit(&changes) {
                 Ok(()) => {
@@ -185,6 +231,7 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
     }
 
     fn tell(&mut self, text: Option<&'static str>) {
+        self.queue.lacks_space.store(text.is_some(), Ordering::Relaxed);
         if mem::replace(&mut self.told, text) != text {
             self.events.is_full(text);
         }

@@ -84,6 +84,8 @@ fn told(settings: Settings, others: &[&str]) -> String {
         sent: 0,
         cause: 0,
         bytes: cdr::encode(&Word { number: 7 }),
+        origin: 1,
+        number: 1,
     };
     let mut messages = Undelivered::from([(Arc::from("WORDS"), others.iter().map(arrived).collect())]);
     network.unwrap().deliver(&mut messages);

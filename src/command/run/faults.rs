@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use saoms_api::Time;
 use saoms_api::event::EventCall;
 use saoms_api::event::fault::{FaultCall, FaultSubjects};
 use saoms_api::extension::{EventContent, EventLanguage, LineFault, TimedMessage};
 use saoms_api::host::format_duration;
+use saoms_api::{Level, Time};
 use saoms_core::schedule::{Handle, Takers};
 use saoms_lang::assembly::{Assembly, ComponentSpec, fault_subjects, seen};
 use saoms_lang::diagnostic::{Severity, SeverityLevel};
@@ -214,6 +214,16 @@ fn placed(line: &str, planned: &[PlannedEvent], fault: LineFault) -> LineFault {
     }
 }
 
+/// Puts events into a fleet that has just started, but for those whose time came before that from which it goes on.
+pub(in crate::command) fn play_all(events: Vec<PlannedEvent>, handle: &Handle) {
+    let recalled = handle.recalled();
+    for event in events.into_iter().filter(|event| recalled.is_none_or(|recalled| event.at() > recalled)) {
+        if let Err(why) = event.play(handle) {
+            handle.note(Level::Error, why);
+        }
+    }
+}
+
 /// Reports what is wrong with a script.
 pub(in crate::command) fn report_wrong(wrong: &[String]) {
     for one in wrong {
@@ -223,6 +233,11 @@ pub(in crate::command) fn report_wrong(wrong: &[String]) {
 }
 
 impl PlannedEvent {
+    /// Its time.
+    fn at(&self) -> Time {
+        self.message.at.unwrap_or(Time::START)
+    }
+
     /// Puts it into a fleet that has just started.
     ///
     /// # Errors

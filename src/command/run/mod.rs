@@ -49,7 +49,7 @@ use control::{Control, NetworkArguments};
 pub(super) use ending::is_ignored;
 use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers, Unreadable};
-use faults::{FaultScript, Known, report_wrong};
+use faults::{FaultScript, Known, play_all, report_wrong};
 use history::HistoryArguments;
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
@@ -141,8 +141,8 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) faults: Option<PathBuf>,
 
-    /// Keep in this folder what has to outlive the program, such as the grants of zones: the same command goes on from
-    /// it after a crash or a power failure. The folder is made if it is missing; no other program may use it meanwhile
+    /// Keep the fleet in this folder: the same command goes on from there, after a crash, a power failure or a usual
+    /// end. The folder is made if it is missing; no other program may use it meanwhile
     #[arg(long, value_name = "FOLDER")]
     pub(crate) state: Option<PathBuf>,
 
@@ -343,8 +343,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     signals.starts(assembly.run.hangup);
     let (mut server, mut clients) = (None, Vec::new());
     let door: Arc<Door> = Arc::default();
+    let mut until_events = None;
     let before = |handle: &Handle| {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
+        numbers.outlive(handle);
+        watch.iter().filter(|_| handle.recalled().is_some()).for_each(|watch| watch.goes_on());
+        // One that goes on from where its work was done would end before it hears of more.
+        until_events = Some(handle.hold());
         signals.reaches(handle);
         delivery.start(handle);
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
@@ -374,14 +379,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     let hold = arguments.stay.then(|| fleet.handle().hold());
     let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
-    for fault in faults {
-        if let Err(why) = fault.play(&fleet.handle()) {
-            fleet.handle().note(Level::Error, why);
-        }
-    }
-    if let Some(events) = events {
-        events.play(fleet.handle(), arguments.virtual_time, || signals.has_come());
-    }
+    play_all(faults, &fleet.handle());
+    events.into_iter().for_each(|events| events.play(fleet.handle(), arguments.virtual_time, || signals.has_come()));
+    drop(until_events);
     if arguments.virtual_time {
         // Virtual time waits for who reads what is printed.
         limit_patience(arguments.grace.max(PAGER_PATIENCE));

@@ -8,6 +8,7 @@ mod fmt;
 mod graph;
 mod history;
 mod log;
+mod memory;
 mod new;
 mod operation;
 mod options;

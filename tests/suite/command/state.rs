@@ -10,7 +10,7 @@ use std::time::Duration;
 use crate::support::{answer, command, empty_folder, saoms_in, text};
 
 /// Four robots that cross each other's way all the time, fast, and a zone.
-fn crossing() -> String {
+pub(super) fn crossing() -> String {
     let component = |id: &str, class: &str, more: &str| {
         format!(
             r#"<component name="{id}"><implementation.rust class="saoms.{class}"/>
@@ -26,7 +26,7 @@ fn crossing() -> String {
     components += &component("Zone", "Zone", world);
     components += &component("Master", "MasterEnvironment", "");
     components += &component("MasterRobot", "MasterRobot", "");
-    let scenario = property("scenario", "at 0.1s 24 times luggage random to random");
+    let scenario = property("scenario", "at 0.1s 80 times luggage random to random");
     components += &component("Environment", "Environment", &scenario);
     for (robot, x, y) in [("Robot1", "0", "0"), ("Robot2", "5", "0"), ("Robot3", "0", "5"), ("Robot4", "5", "5")] {
         let place = property("chargeX", x) + &property("chargeY", y) + &property("discharge", "0.01");
@@ -54,7 +54,7 @@ fn a_fleet_that_is_killed_goes_on_with_its_grants() {
     let output = saoms_in(&folder, &arguments);
     let told = text(&output);
     assert_eq!(output.status.code(), Some(0), "{told}");
-    assert!(told.contains("24 of 24 pieces of luggage delivered, no collision"), "{told}");
+    assert!(told.contains("80 of 80 pieces of luggage delivered, no collision"), "{told}");
     assert!(!told.contains("warning: robot") && !told.contains("grants nothing"), "{told}");
     // The zone knows its grants, and nobody else has kept anything.
     let fleet = crossing().replace(r#"name="Zone""#, r#"name="Other""#);

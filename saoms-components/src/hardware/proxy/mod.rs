@@ -9,16 +9,11 @@ use saoms_api::host::cdr::{self, Reader};
 use saoms_api::host::{Arguments, Interface, Operation, ServiceCall};
 
 use crate::grid::Block;
-use crate::hardware::{Action, ActionKind, Hardware, Progress};
+use crate::hardware::{Action, ActionKind, BEGIN, CANCEL, ENTER, Hardware, POLL, Progress, RETIRE};
 submit! { RemoteProxy { interface: <dyn Hardware as Interface>::NAME, make: || Box::<HardwareProxy>::default() } }
 
-/// The operations by their places in the interface.
-const ENTER: Operation = 0;
+/// Other operations by their places in the interface.
 const AREA: Operation = 1;
-const BEGIN: Operation = 2;
-const POLL: Operation = 3;
-const CANCEL: Operation = 4;
-const RETIRE: Operation = 5;
 const BATTERY: Operation = 6;
 
 /// The proxy of hardware in another program.

@@ -22,6 +22,11 @@ pub(crate) struct HardwareClient {
     retired: bool,
     /// True if the robot goes on after a failure, and does not know yet what the hardware did meanwhile.
     catching_up: bool,
+    /// True if it does so in another program than that which began the running action.
+    is_recalled: bool,
+    /// True if a person was asked what became of that, and what was said.
+    pub(crate) asks_a_person: bool,
+    pub(crate) told: Option<Progress>,
     running: Option<Action>,
     patience: Patience,
     gauge: Gauge,
@@ -48,7 +53,8 @@ impl HardwareClient {
     pub(crate) fn new(context: &mut Context<'_>) -> Result<HardwareClient, Failure> {
         let hardware: HardwareReference = context.reference("world")?;
         let wired = context.is_wired(&hardware);
-        Ok(HardwareClient { hardware, wired, ..HardwareClient::default() })
+        let is_recalled = context.goes_on_from_earlier_program();
+        Ok(HardwareClient { hardware, wired, is_recalled, ..HardwareClient::default() })
     }
 
     pub(crate) fn memory(&self) -> HardwareMemory {
@@ -71,7 +77,22 @@ impl HardwareClient {
 
     /// The robot knows what the hardware did meanwhile, and what it does now.
     pub(crate) fn caught_up(&mut self, running: Option<Action>) {
-        (self.catching_up, self.running) = (false, running);
+        (self.catching_up, self.is_recalled, self.running) = (false, false, running);
+    }
+
+    /// What became of the action that an earlier program began; the outer `None` where there is none, the inner one
+    /// where the hardware does not know.
+    pub(crate) fn recall(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+    ) -> Result<Option<Reply<Option<Progress>>>, Failure> {
+        let Some(action) = self.running.filter(|_| self.is_recalled) else { return Ok(None) };
+        match self.hardware.recall(context, robot, action) {
+            // Hardware of an earlier version has no such operation.
+            Err(CallError::Mismatch { .. }) => Ok(Some(Reply::Answer(None))),
+            answer => reply(answer).map(Some),
+        }
     }
 
     /// Asks about whatever it may do.

@@ -99,7 +99,8 @@ impl ArrivedFrame {
             let (bytes, behind) = rest.split_at_checked(usize::try_from(size).ok()?)?;
             rest = behind;
             let (component, key) = (Arc::clone(&component), has_key.then_some(key));
-            arrived.push((number, Arrived { component, to, key, sent, cause, bytes: bytes.to_owned() }));
+            let bytes = bytes.to_owned();
+            arrived.push((number, Arrived { component, to, key, sent, cause, bytes, origin: 0, number }));
         }
         rest.is_empty().then_some(ArrivedFrame { program, schema, messages: arrived, cells })
     }

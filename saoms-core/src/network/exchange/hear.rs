@@ -84,6 +84,7 @@ impl Exchange {
             false => News::Joined { program, name },
         }));
         self.go_on(alive);
+        self.go_on_reading(alive);
         // Calls may wait for it, or for one before it.
         self.calls_at = 0;
         self.say_soon();

@@ -23,6 +23,10 @@ pub struct Arrived {
     pub cause: u64,
     /// The message.
     pub bytes: Vec<u8>,
+    /// The first start of the program that sent it.
+    pub origin: u64,
+    /// Its number there, on its topic.
+    pub number: u64,
 }
 
 /// Signs of life that say what was received, since some of them may be lost.
@@ -62,6 +66,11 @@ pub(super) struct Incoming {
 }
 
 impl Incoming {
+    /// Those of a program of which an earlier start of this one had received all up to this number.
+    pub(super) fn after(next: u64) -> Incoming {
+        Incoming { next, done: next, ..Incoming::default() }
+    }
+
     /// Takes a message of an event topic. Adds what can be delivered now to `ready`, in order.
     pub(super) fn take_event(&mut self, number: u64, arrived: Arrived, ready: &mut Vec<Arrived>) {
         self.last = self.last.max(number);

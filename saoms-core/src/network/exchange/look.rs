@@ -226,6 +226,7 @@ fn state(sent: &Sent) -> AroundState {
     }
 }
 
-fn arrived(AroundState { component, to, key, has_key, sent, cause, bytes, .. }: AroundState) -> Arrived {
-    Arrived { component: component.into(), to, key: has_key.then_some(key), sent, cause, bytes }
+fn arrived(AroundState { number, component, to, key, has_key, sent, cause, bytes, .. }: AroundState) -> Arrived {
+    let key = has_key.then_some(key);
+    Arrived { component: component.into(), to, key, sent, cause, bytes, origin: 0, number }
 }

@@ -31,6 +31,9 @@ pub struct Memory {
     pub events: BTreeMap<Arc<str>, BTreeMap<u64, KeptEvent>>,
     /// Who reads them.
     pub readers: Vec<KnownReader>,
+    /// What was received of others: the first start of the program that sent it, the topic, and the number of the first
+    /// event that was not.
+    pub received: Vec<(u64, Arc<str>, u64)>,
 }
 
 /// An event that outlives its program.
@@ -139,7 +142,23 @@ impl Exchange {
             peer.known = Some(reader.clone());
             self.peers.insert(reader.program, peer);
         }
+        for (origin, topic, next) in &memory.received {
+            self.received_before.entry(*origin).or_default().insert(Arc::clone(topic), *next);
+        }
         self.forget_received();
+    }
+
+    /// Goes on behind the events of a program that an earlier start of this one had received.
+    pub(super) fn go_on_reading(&mut self, alive: &Alive) {
+        let Some(topics) = self.received_before.remove(&alive.origin) else { return };
+        let Some(peer) = self.peers.get_mut(&alive.program) else { return };
+        for (topic, next) in topics {
+            // One that has not sent so much has another state than it had.
+            let has_sent = |sends: &Sends| sends.topic == *topic && !sends.is_state && next <= sends.last + 1;
+            if alive.sends.iter().any(has_sent) {
+                peer.incoming.entry(topic).or_insert_with(|| Incoming::after(next));
+            }
+        }
     }
 
     /// A program is heard first that may go on from the state of a known one: its events go on with their numbers, and

@@ -80,6 +80,8 @@ pub struct Exchange {
     left: BTreeSet<u64>,
     /// What was received of programs that may start again, by their first starts.
     past: BTreeMap<u64, Past>,
+    /// How far earlier starts of this program had received events, by the first starts of those that sent them.
+    received_before: BTreeMap<u64, BTreeMap<Arc<str>, u64>>,
     /// The program that each component runs in, and how many of its messages were delivered.
     owners: HashMap<String, Owner>,
     /// Whether this program sees work left.
@@ -121,6 +123,7 @@ impl Exchange {
             peers: BTreeMap::new(),
             left: BTreeSet::new(),
             past: BTreeMap::new(),
+            received_before: BTreeMap::new(),
             owners: HashMap::new(),
             vote: Vote::default(),
             was_done: false,
@@ -139,7 +142,7 @@ impl Exchange {
         if let Some(memory) = memory {
             exchange.recall(&memory);
             // It is in the exchange now.
-            exchange.settings.memory = Some(Memory { events: BTreeMap::new(), readers: Vec::new(), ..memory });
+            exchange.settings.memory = Some(Memory { origin: memory.origin, start: memory.start, ..Memory::default() });
         }
         exchange
     }
@@ -316,7 +319,9 @@ impl Exchange {
 
     /// Delivers messages that are for the fleet; a sender keeps nothing for those that are not.
     fn deliver(&mut self, program: u64, topic: &Arc<str>, ready: Vec<Arrived>) {
-        for arrived in ready {
+        let origin = self.peers.get(&program).map_or(program, |peer| peer.origin);
+        for mut arrived in ready {
+            arrived.origin = origin;
             let differs = self.peers.get(&program).is_some_and(|peer| peer.differing.contains(topic));
             if !differs && self.is_of(program, &arrived.component) {
                 self.actions.push(Action::Deliver { program, topic: Arc::clone(topic), arrived });

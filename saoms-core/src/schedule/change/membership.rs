@@ -1,3 +1,4 @@
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use saoms_lang::assembly::ComponentSpec;
@@ -8,6 +9,7 @@ use crate::observe::Occurrence;
 use crate::schedule::component::body::Body;
 use crate::schedule::component::stored::Stored;
 use crate::schedule::engine::lifecycle::Request;
+use crate::schedule::engine::memory::SlotMemory;
 use crate::schedule::engine::slot::{NEVER, PendingRequest, Slot, SlotState, TaskPolicy};
 use crate::schedule::engine::trace::TraceStep;
 use crate::schedule::engine::{Engine, RunPhase};
@@ -22,15 +24,18 @@ impl Engine {
 
     /// The time at which a change happens.
     pub(super) fn time_of_change(&self, shared: &Shared) -> u64 {
-        if self.phase == RunPhase::Starting { 0 } else { shared.clock.now() }
+        if self.phase == RunPhase::Starting { shared.clock.origin() } else { shared.clock.now() }
     }
 
     /// The numbers of new components. A removed component that returns gets its number again.
     pub(super) fn number<'s>(&self, specs: impl Iterator<Item = &'s Arc<ComponentSpec>>) -> Vec<u32> {
-        let mut next = self.slots.len() as u32;
+        let recalled = self.memory.recalled.as_ref().map_or(&[][..], |recalled| &recalled.names);
+        let recalled: HashMap<&str, u32> = recalled.iter().map(String::as_str).zip(0..).collect();
+        let mut next = (self.slots.len() as u32).max(recalled.len() as u32);
         let number = |spec: &Arc<ComponentSpec>| {
             let known = self.numbers.get(spec.path.as_str()).copied();
-            known.filter(|number| !self.slots[*number as usize].is_member()).unwrap_or_else(|| {
+            let known = known.filter(|number| !self.slots[*number as usize].is_member());
+            known.or_else(|| recalled.get(spec.path.as_str()).copied()).unwrap_or_else(|| {
                 next += 1;
                 next - 1
             })
@@ -46,7 +51,9 @@ impl Engine {
         numbers: &[u32],
     ) {
         let mut names = Vec::new();
-        for (spec, &number) in specs.zip(numbers) {
+        let mut specs: BTreeMap<u32, Arc<ComponentSpec>> = numbers.iter().copied().zip(specs).collect();
+        self.keep_numbers(&mut specs, &mut names);
+        for (number, spec) in specs {
             // One that takes the place of a component of another class does not go on from what that kept.
             let stored = match self.numbers.get(spec.path.as_str()) {
                 Some(known) if self.slots[*known as usize].is_member() => Stored::default(),
@@ -56,6 +63,7 @@ impl Engine {
             if let Some(slot) = self.slots.get_mut(number as usize) {
                 slot.network = network;
                 slot.revive(spec, stored);
+                self.recall_component(number);
                 continue;
             }
             if let Some(records) = &self.records {
@@ -66,12 +74,40 @@ impl Engine {
             names.push(Arc::clone(&slot.name));
             self.numbers.insert(Arc::clone(&slot.name), number);
             self.slots.push(slot);
+            self.recall_component(number);
         }
         shared.names.add(names);
         self.set_apart();
         if self.phase == RunPhase::Starting {
             self.journal_capacity /= self.slots.len().max(1);
         }
+    }
+
+    /// Keeps the numbers of components that an earlier program had and that the fleet has no more: what was saved names
+    /// components by them.
+    fn keep_numbers(&mut self, specs: &mut BTreeMap<u32, Arc<ComponentSpec>>, names: &mut Vec<Arc<str>>) {
+        let Some(any) = specs.values().next().cloned() else { return };
+        let Some(recalled) = self.memory.recalled.take() else { return };
+        for (number, name) in (self.slots.len() as u32..).zip(recalled.names.iter().skip(self.slots.len())) {
+            let spec = specs.remove(&number).unwrap_or_else(|| Arc::clone(&any));
+            let mut slot = Slot::new(number, Arc::clone(&spec), Stored::default());
+            let is_there = spec.path == *name;
+            slot.name = Arc::from(name.as_str());
+            slot.state = SlotState::Removed;
+            if let Some(body) = &mut slot.body {
+                body.part.name = Arc::clone(&slot.name);
+            }
+            names.push(Arc::clone(&slot.name));
+            self.numbers.insert(Arc::clone(&slot.name), number);
+            self.slots.push(slot);
+            if is_there {
+                if let Some(records) = &self.records {
+                    records.join(ComponentName::of(&spec), self.phase != RunPhase::Starting);
+                }
+                specs.insert(number, spec);
+            }
+        }
+        self.memory.recalled = Some(recalled);
     }
 
     /// Moves components to worker threads whose class never runs on the timer, and those that call them: a call runs on
@@ -130,7 +166,10 @@ impl Engine {
         let slot = &mut self.slots[number as usize];
         if slot.state != SlotState::Abandoned {
             slot.state = SlotState::Removed;
+            slot.memory = SlotMemory::default();
             (slot.entry, slot.pending, slot.sees_work) = (NEVER, PendingRequest::None, None);
+            let now = slot.last_due.unwrap_or_default();
+            self.note_differs(number, now);
         }
     }
 
@@ -156,7 +195,9 @@ impl Engine {
         let slot = &mut self.slots[number as usize];
         slot.body = Some(body);
         if is_active && slot.policy.periodic {
-            slot.due = now.saturating_add(slot.policy.delay);
+            let recalled = self.recalled_due(number, now);
+            let slot = &mut self.slots[number as usize];
+            slot.due = recalled.unwrap_or(now.saturating_add(slot.policy.delay));
             let when = slot.next_time();
             match slot.pending {
                 PendingRequest::None => {
@@ -180,6 +221,10 @@ impl Engine {
         let mut body = self.slots[number as usize].body.take()?;
         let outgoing = body.inherit(&mut self.bus, predecessor);
         self.release(number, &mut body, now);
+        // What the new instance saves is not what the earlier one did.
+        body.part.lasting.touch();
+        self.note_saved(&body.part, false, now);
+        self.note_inbox(number);
         self.deliver(&mut body.part, now);
         let vote = body.part.vote.take();
         let slot = &mut self.slots[number as usize];

@@ -148,16 +148,33 @@ impl<'a> Change<'a> {
 
     /// Constructs and initializes a new component, where it runs from the start.
     fn begin(&mut self, number: u32) -> Result<(), ChangeError> {
-        if !self.shared.lock().slots[number as usize].policy.on_startup {
+        if !self.shared.lock().starts_with_fleet(number) {
             return Ok(());
         }
-        match self.initialize(number) {
+        let mut result = self.initialize(number);
+        if let Err((culprit, failure)) = &result
+            && *culprit == number
+            && self.begins_anew(number, failure)
+        {
+            result = self.initialize(number);
+        }
+        match result {
             Ok(()) => {
                 self.begun.push(number);
                 Ok(())
             }
             Err((culprit, failure)) => Err(self.failed(culprit, failure)),
         }
+    }
+
+    /// Lets a component that could not go on from what an earlier program saved begin anew. False for others.
+    fn begins_anew(&self, number: u32, failure: &Failure) -> bool {
+        let mut engine = self.shared.lock();
+        let now = engine.time_of_change(self.shared);
+        let why = with_library(&engine.slots[number as usize].spec, failure);
+        let begins = engine.begin_anew(number, &why, now);
+        self.shared.release(engine);
+        begins
     }
 
     /// Initializes a new component. The number in the error is that of the component that failed, which may be a
@@ -311,8 +328,14 @@ impl<'a> Change<'a> {
                 engine.forget_stored_of(&mut body.part, now);
             }
         }
+        if begins {
+            engine.recall_states();
+        }
         for &number in &self.added {
             engine.join(number, now);
+        }
+        if begins {
+            engine.recall_rest(now);
         }
         let mut outgoing = Vec::new();
         for (number, predecessor, done) in self.taken.drain(..) {

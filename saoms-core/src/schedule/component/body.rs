@@ -6,6 +6,7 @@ use saoms_api::host::{DynComponent, Invocation, SharedMessage};
 use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Time};
 
 use super::collection::Collection;
+use super::effects::Effects;
 use super::host::ComponentHost;
 use super::lasting::Lasting;
 use super::remote::{RemoteHeartbeat, Remotes};
@@ -16,6 +17,7 @@ use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFault;
 use crate::journal::Recorder;
 use crate::schedule::engine::failing::Told;
+use crate::schedule::engine::memory::AlertForm;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::order::InCode;
 use crate::schedule::shared::Shared;
@@ -67,6 +69,10 @@ pub(crate) struct Part {
     pub(crate) stored: Stored,
     /// What a restart goes on from.
     pub(crate) lasting: Lasting,
+    /// What it wants outside of the program, and has not begun.
+    pub(crate) effects: Effects,
+    /// The alerts that it has raised and that are not over.
+    pub(crate) alerts: Vec<AlertForm>,
     /// Bytes in the outbox from code of libraries.
     pub(crate) sent_bytes: usize,
     /// What the present code has written.
@@ -128,6 +134,8 @@ pub(crate) enum Job {
     Describe,
     /// Carry out an order of an operator.
     Order,
+    /// Save the state, so that it outlives the program.
+    Save,
     /// Shut down.
     Shutdown,
 }
@@ -141,6 +149,7 @@ impl Job {
             Job::React => "a reaction",
             Job::Ask | Job::Describe => "`status`",
             Job::Order => "an order of an operator, or a call of another program",
+            Job::Save => "`save`",
             Job::Shutdown => "`shutdown`",
         }
     }
@@ -173,6 +182,8 @@ impl Body {
             to_keep: Vec::new(),
             stored: Stored::default(),
             lasting: Lasting::default(),
+            effects: Effects::default(),
+            alerts: Vec::new(),
             sent_bytes: 0,
             spent: Spent::default(),
             unheard: Unheard::default(),
@@ -234,6 +245,7 @@ impl Body {
             }),
             Job::Describe => self.describe(shared),
             Job::Order => self.carry_out(shared),
+            Job::Save => self.save_for_later(),
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
@@ -245,6 +257,10 @@ impl Body {
             self.part.departed.iter_mut().for_each(Vec::clear);
             self.part.has_departed = false;
             self.part.lasting.touch();
+            if self.part.lasting.saves_at_once {
+                // What it cannot save now, it saves after the next execution, or fails then.
+                let _ = self.save_for_later();
+            }
             return result;
         }
         if result.is_ok() && job == Job::Execute && self.part.beats() {
@@ -259,7 +275,7 @@ impl Body {
         }
         if result.is_ok() && matches!(job, Job::Execute | Job::React) {
             self.part.lasting.note_heard();
-            if self.part.lasting.saves {
+            if self.part.lasting.is_saved() {
                 result = self.save();
             }
         }
@@ -267,7 +283,7 @@ impl Body {
             match job {
                 Job::Execute => self.part.collection.filled.clear(&mut self.inboxes),
                 Job::React => self.reactions.iter_mut().for_each(Vec::clear),
-                Job::Start | Job::Ask | Job::Describe | Job::Order | Job::Shutdown => {}
+                Job::Start | Job::Ask | Job::Describe | Job::Order | Job::Save | Job::Shutdown => {}
             }
         }
         if result.is_err() {
@@ -308,6 +324,10 @@ impl Body {
         self.part.initializing = true;
         self.part.recorder.reset();
         self.part.lasting.begin();
+        if !self.part.lasting.goes_on() {
+            self.part.alerts.clear();
+            self.part.effects = Effects::default();
+        }
         let result = self.call(shared, |instance, context| instance.initialize(context));
         self.part.initializing = false;
         result??;
@@ -326,8 +346,11 @@ impl Body {
         self.part.begin(cause);
         let before = self.save_touched();
         let result = before.and_then(|()| self.call(shared, |instance, context| instance.serve(invocation, context)));
-        let result = self.part.spent.is_within().and(result);
+        let mut result = self.part.spent.is_within().and(result);
         self.part.lasting.touch();
+        if self.part.lasting.saves_at_once {
+            result = result.and_then(|served| self.save_for_later().map(|()| served));
+        }
         if let Err(failure) = &result {
             shared.stops.request(&self.part.stops);
             self.part.lasting.take_back(&mut shared.sections());

@@ -5,6 +5,7 @@ use saoms_api::host::{Invocation, ServiceCall, cdr};
 use saoms_api::{CallError, Failure};
 
 use super::body::{Body, Job, Part};
+use super::effects;
 use super::remote::call_elsewhere;
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::lifecycle::Request;
@@ -17,6 +18,26 @@ const MAX_DEPTH: u32 = 64;
 /// Calls through a reference of a component whose code runs on this thread. The provider's code runs on the same
 /// thread, as in a function call: it is taken out of the engine meanwhile, and is busy for all others.
 pub(crate) fn call(
+    shared: &Arc<Shared>,
+    caller: &mut Part,
+    reference: u32,
+    call: &mut dyn ServiceCall,
+) -> Result<(), CallError> {
+    let place = reference & ((1 << TARGET_SHIFT) - 1);
+    let Some(wire) = caller.spec.references.get(place as usize) else {
+        return Err(CallError::NotWired { reference: "(a handle that `Context::reference` did not give)".to_owned() });
+    };
+    let number = (reference >> TARGET_SHIFT) as usize;
+    if let Some(effects) = effects::effects_of(shared, wire, number)
+        && let Some(served) = effects::serve(shared, caller, reference, effects, call)
+    {
+        return served;
+    }
+    call_now(shared, caller, reference, call)
+}
+
+/// The same, at once.
+pub(super) fn call_now(
     shared: &Arc<Shared>,
     caller: &mut Part,
     reference: u32,
@@ -141,6 +162,7 @@ impl Engine {
             self.slots[index as usize].body = Some(body);
             return;
         }
+        self.note_saved(&body.part, false, now);
         if !body.part.held {
             self.deliver(&mut body.part, now);
         }

@@ -322,6 +322,10 @@ impl Host for ComponentHost<'_> {
         self.part.lasting.goes_on()
     }
 
+    fn goes_on_from_earlier_program(&self) -> bool {
+        self.part.lasting.goes_on() && self.part.lasting.is_recalled()
+    }
+
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
         if !self.part.initializing {
             return Err(Failure::new(
@@ -438,7 +442,9 @@ impl Host for ComponentHost<'_> {
 
     fn alert(&mut self, kind: &str, subject: &str, line: Option<fmt::Arguments<'_>>) {
         if self.part.spent.has_line() {
-            let (kind, subject, text) = (kind.into(), subject.into(), line.map(|line| line.to_string()));
+            let text = line.map(|line| line.to_string());
+            self.part.note_alert(kind, subject, text.as_deref());
+            let (kind, subject) = (kind.into(), subject.into());
             self.emit(Occurrence::Alert { kind, subject, text });
         }
     }

@@ -1,5 +1,7 @@
 //! What a component goes on from after a failure: the state that it saved, and the messages that it heard in vain.
 
+use std::sync::Arc;
+
 use saoms_api::host::SharedMessage;
 use saoms_api::host::contain::contained;
 use saoms_api::{Failure, Saved};
@@ -7,14 +9,21 @@ use saoms_api::{Failure, Saved};
 use super::body::{Body, Part};
 use crate::bus::{Bus, TopicId};
 use crate::report::Sections;
+use crate::schedule::engine::memory::AlertForm;
 
 /// What outlives an instance that fails.
 #[derive(Debug, Default)]
 pub(crate) struct Lasting {
-    /// True if the state is saved after each execution.
+    /// True if the state is saved after each execution, for a restart after a failure.
     pub(crate) saves: bool,
+    /// True if it is saved after each execution, so that it outlives the program; and whether it is after each call,
+    /// too, since nobody else may run its code.
+    pub(crate) outlives: bool,
+    pub(crate) saves_at_once: bool,
     /// State of the last execution that did not fail.
-    saved: Option<Saved>,
+    saved: Option<Arc<Saved>>,
+    /// True if the saved state is of an earlier program.
+    is_recalled: bool,
     /// True while an instance initializes that goes on from it.
     goes_on: bool,
     /// True if the present instance has gone on from it.
@@ -36,13 +45,53 @@ impl Lasting {
     /// Begins an instance.
     pub(super) fn begin(&mut self) {
         self.goes_on = self.will_go_on();
+        if !self.goes_on {
+            self.saved = None;
+        }
         (self.continued, self.touched) = (false, false);
         self.counted.clear();
     }
 
     /// True if the next instance goes on from a saved state.
     pub(crate) fn will_go_on(&self) -> bool {
-        self.saved.as_ref().is_some_and(|saved| !saved.is_nothing())
+        (self.saves || self.is_recalled) && self.saved.as_ref().is_some_and(|saved| !saved.is_nothing())
+    }
+
+    /// Has the next instance go on from the state that an earlier program saved.
+    pub(crate) fn recall(&mut self, saved: Arc<Saved>) {
+        (self.saved, self.is_recalled) = (Some(saved), true);
+    }
+
+    /// True if the state is of an earlier program, and no instance of this one has gone on from it.
+    pub(super) fn is_recalled(&self) -> bool {
+        self.is_recalled
+    }
+
+    /// The state that was saved last.
+    pub(crate) fn saved(&self) -> Option<&Arc<Saved>> {
+        self.saved.as_ref()
+    }
+
+    /// True if the state may have changed since it was saved.
+    pub(crate) fn is_touched(&self) -> bool {
+        self.touched
+    }
+
+    /// True if the state is saved after each execution.
+    #[inline]
+    pub(super) fn is_saved(&self) -> bool {
+        self.saves || self.outlives
+    }
+
+    /// The events that an execution heard in vain, by topic.
+    pub(crate) fn unread(&self) -> impl Iterator<Item = &(TopicId, Vec<SharedMessage>)> {
+        self.unread.iter().chain(&self.unread_reactions)
+    }
+
+    /// Has the next instance hear events again, or react to them again.
+    pub(crate) fn hear_again(&mut self, topic: TopicId, messages: Vec<SharedMessage>, reacts: bool) {
+        let unread = if reacts { &mut self.unread_reactions } else { &mut self.unread };
+        unread.push((topic, messages));
     }
 
     /// True while an instance initializes that goes on from a saved state.
@@ -62,12 +111,13 @@ impl Lasting {
 
     /// Forgets all: whoever is scheduled anew begins anew.
     pub(crate) fn forget(&mut self) {
-        *self = Lasting { saves: self.saves, ..Lasting::default() };
+        let Lasting { saves, outlives, saves_at_once, .. } = *self;
+        *self = Lasting { saves, outlives, saves_at_once, ..Lasting::default() };
     }
 
     /// Forgets the state of an instance that was replaced by one of another build.
     pub(crate) fn forget_state(&mut self) {
-        (self.saved, self.touched) = (None, false);
+        (self.saved, self.touched, self.is_recalled) = (None, false, false);
         self.counted.clear();
     }
 
@@ -84,8 +134,8 @@ impl Lasting {
     }
 
     /// Notes that the state may have changed other than by an execution.
-    pub(super) fn touch(&mut self) {
-        self.touched = self.saves;
+    pub(crate) fn touch(&mut self) {
+        self.touched = self.is_saved();
     }
 
     /// Takes over the events that the instance before a takeover had not handled.
@@ -118,7 +168,23 @@ impl Lasting {
     }
 }
 
+impl Part {
+    /// Notes an alert that the component raises or ends.
+    pub(super) fn note_alert(&mut self, kind: &str, subject: &str, text: Option<&str>) {
+        self.alerts.retain(|alert| alert.kind != kind || alert.subject != subject);
+        if let Some(text) = text {
+            self.alerts.push(AlertForm { kind: kind.into(), subject: subject.into(), text: text.into() });
+        }
+    }
+}
+
 impl Body {
+    /// True if it was given messages that it has not handled.
+    pub(crate) fn has_unread(&self) -> bool {
+        let inboxes = self.inboxes.iter().chain(&self.reactions);
+        self.part.lasting.unread().next().is_some() || inboxes.into_iter().any(|inbox| !inbox.is_empty())
+    }
+
     /// Saves the state after an execution, for the instance that a restart puts in its place.
     #[cold]
     pub(super) fn save(&mut self) -> Result<(), Failure> {
@@ -128,8 +194,8 @@ impl Body {
         let lasting = &mut self.part.lasting;
         lasting.touched = false;
         lasting.counted.clear();
-        if lasting.saved.as_ref() != Some(&saved) {
-            lasting.saved = Some(saved);
+        if lasting.saved.as_deref() != Some(&saved) {
+            lasting.saved = Some(Arc::new(saved));
         }
         Ok(())
     }
@@ -137,6 +203,11 @@ impl Body {
     /// Saves what changed since the last execution, before code runs that may fail.
     #[inline]
     pub(super) fn save_touched(&mut self) -> Result<(), Failure> {
+        if self.part.lasting.touched && self.part.lasting.saves { self.save() } else { Ok(()) }
+    }
+
+    /// Saves what changed since the last execution, so that it outlives the program.
+    pub(super) fn save_for_later(&mut self) -> Result<(), Failure> {
         if self.part.lasting.touched { self.save() } else { Ok(()) }
     }
 
@@ -144,10 +215,10 @@ impl Body {
     /// begins saves what it begins with.
     pub(super) fn go_on(&mut self) -> Result<(), Failure> {
         let lasting = &mut self.part.lasting;
-        lasting.goes_on = false;
+        (lasting.goes_on, lasting.is_recalled) = (false, false);
         let Some(instance) = &mut self.instance else { return Ok(()) };
         let Some(saved) = lasting.saved.take().filter(|saved| !saved.is_nothing()) else {
-            if lasting.saves && self.save().is_err() {
+            if lasting.is_saved() && self.save().is_err() {
                 // It has nothing to save before its first execution.
                 self.part.lasting.saved = None;
             }

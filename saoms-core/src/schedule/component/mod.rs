@@ -5,6 +5,7 @@ pub(super) mod body;
 mod call;
 pub(crate) mod collection;
 mod declared;
+mod effects;
 mod host;
 pub(super) mod lasting;
 pub(super) mod library;

@@ -58,6 +58,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 load.is_busy(shared, now);
             }
             Next::HandOver => engine = workers::hand_over(shared, engine),
+            Next::Cut => engine.cut(&mut shared.sections(), now),
             Next::Wait(until) => {
                 sleep(shared, engine, until);
                 engine = shared.lock();

@@ -7,8 +7,9 @@ use std::sync::{Arc, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use saoms_api::Level;
+use saoms_api::{Level, Time};
 
+use crate::schedule::engine::memory::{Recollection, is_of_memory, recall_report};
 use crate::schedule::inject::add_commits;
 use crate::schedule::networks::kept::url_of;
 use crate::schedule::os::thread::start_thread;
@@ -63,20 +64,39 @@ pub(crate) fn use_store(shared: &Arc<Shared>, store: Store) -> io::Result<()> {
         }
     })?;
     *shared.store_thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
-    shared.lock().use_store(found, Arc::clone(&queue));
+    recall_report(&found, &mut shared.sections());
+    let recollection = shared.lock().use_store(found, Arc::clone(&queue));
+    if let Some(Recollection { time, components, was_done }) = recollection {
+        shared.clock.begin_at(time);
+        let from = Time::from_nanos(time);
+        let plural = if components == 1 { "" } else { "s" };
+        let mut text = format!("goes on from its state of {from}, with {components} component{plural}");
+        if was_done {
+            text.push_str(
+                ": all work was done then, so that it ends at once unless more comes; to begin anew, name another folder",
+            );
+        }
+        shared.note(Level::Info, text);
+    }
     // A fleet has one store: it is set once, before the components initialize.
     let _ = shared.store.set(queue);
     Ok(())
 }
 
 /// Tells of what a store has of components and networks that the fleet does not have: it stays there.
-pub(crate) fn note_unused(shared: &Shared) {
+pub(crate) fn note_unused(shared: &Shared, remembered: &[String]) {
     let (urls, components): (BTreeSet<String>, Vec<String>) = {
         let engine = shared.lock();
-        let unknown = engine.found.components().filter(|name| !engine.numbers.contains_key(&***name));
-        let (of_networks, of_components): (Vec<_>, Vec<_>) = unknown.partition(|name| url_of(name).is_some());
-        let urls = of_networks.into_iter().filter_map(|name| url_of(name)).map(|url| format!("`{url}`"));
-        (urls.collect(), of_components.into_iter().map(|name| format!("`{name}`")).collect())
+        let is_there = |name: &str| {
+            let number = engine.numbers.get(name);
+            number.is_some_and(|number| engine.slots[*number as usize].is_member())
+        };
+        let entries: Vec<&str> = engine.found.components().map(|name| &**name).collect();
+        let urls = entries.iter().filter_map(|name| url_of(name)).map(|url| format!("`{url}`"));
+        let kept = entries.iter().copied().filter(|name| url_of(name).is_none() && !is_of_memory(name));
+        let kept: BTreeSet<&str> =
+            kept.chain(remembered.iter().map(String::as_str)).filter(|name| !is_there(name)).collect();
+        (urls.collect(), kept.into_iter().map(|name| format!("`{name}`")).collect())
     };
     if !components.is_empty() {
         let text = format!(
@@ -99,7 +119,9 @@ pub(crate) fn wait_for_commits(shared: &Shared) {
         return;
     }
     let since = Instant::now();
-    while shared.look(|engine| engine.uncommitted > 0) && since.elapsed() < LAST_COMMITS {
+    while shared.look(|engine| engine.uncommitted > 0 || engine.memory.has_uncommitted())
+        && since.elapsed() < LAST_COMMITS
+    {
         sleep(Duration::from_millis(1));
     }
 }

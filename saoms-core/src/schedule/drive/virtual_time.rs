@@ -59,8 +59,8 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 }
                 engine.finish(index, body, job, result, now, now);
             }
-            // No component runs on a worker thread in virtual time.
-            Next::HandOver => {}
+            // No component runs on a worker thread in virtual time, and nothing outlives the program.
+            Next::HandOver | Next::Cut => {}
             Next::Wait(_) if engine.phase == RunPhase::Running && now >= engine.hold => engine = sleep(shared, engine),
             Next::Wait(until) if engine.phase == RunPhase::Running && engine.advance_to(until) < NEVER => {
                 let before = std::mem::replace(&mut now, engine.advance_to(until));

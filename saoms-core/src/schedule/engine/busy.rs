@@ -22,7 +22,7 @@ impl Engine {
                 Job::Execute | Job::React => true,
                 Job::Start => self.phase == RunPhase::Running && slot.pending == PendingRequest::None,
                 Job::Shutdown => part.retries_shutdown,
-                Job::Ask | Job::Describe | Job::Order => false,
+                Job::Ask | Job::Describe | Job::Order | Job::Save => false,
             }
     }
 
@@ -37,6 +37,8 @@ impl Engine {
         }
         self.step(now, index, TraceStep::Skipped);
         body.part.collection.reset();
+        self.note_saved(&body.part, false, now);
+        self.note_inbox(index);
         if job == Job::Execute {
             self.deliver(&mut body.part, now);
             let mut back = 0;

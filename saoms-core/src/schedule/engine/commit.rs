@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicKind};
 
+use super::memory::{CUT, Recollection};
 use super::{Engine, RunPhase};
 use crate::bus::{Bus, TopicId};
 use crate::schedule::component::body::Part;
 use crate::schedule::component::stored::{Stored, StoredChange};
 use crate::schedule::networks::kept::NOBODY;
-use crate::store::{Batch, Change, Contents, StoreQueue};
+use crate::store::{Change, Contents, StoreQueue};
 
 /// When what a component keeps is committed.
 #[derive(Debug)]
@@ -30,7 +31,7 @@ pub(crate) struct Uncommitted {
     /// Changes that take it back.
     before: Vec<StoredChange>,
     /// Messages of that execution, and of later ones that kept nothing.
-    messages: Vec<(TopicId, SharedMessage)>,
+    pub(super) messages: Vec<(TopicId, SharedMessage)>,
     /// Number of messages beyond which those of state topics are removed that newer ones replace.
     most: usize,
     /// True if the run does not end before the messages are read.
@@ -71,6 +72,7 @@ impl Engine {
     #[cold]
     pub(super) fn keep(&mut self, part: &mut Part, events: Vec<Change>, now: u64) {
         let Part { to_keep, stored, index, name, .. } = part;
+        let index = &*index;
         let change =
             |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
         let changes: Vec<Change> = to_keep.iter().map(change).chain(events).collect();
@@ -86,7 +88,10 @@ impl Engine {
                 self.slots[*index as usize].is_cut_off = true;
                 return;
             }
-            Commits::InStore(queue) => queue.put(Batch { index: *index, number, changes }),
+            Commits::InStore(_) => {
+                let index = *index;
+                self.hand_over(index, number, changes, now);
+            }
         }
         self.look_at = self.injections.earliest().map_or(self.look_at, |when| when.min(self.look_at));
         let uncommitted = Uncommitted { number, before, messages: Vec::new(), most: MANY, settles: false };
@@ -119,6 +124,7 @@ impl Engine {
     #[cold]
     pub(crate) fn commit(&mut self, index: u32, number: u64, now: u64) {
         let has_events = match index {
+            CUT => return self.commit_cut(number, now),
             NOBODY => self.commit_outside(number),
             _ => self.commit_of(index, number, now),
         };
@@ -178,6 +184,7 @@ impl Engine {
             self.unsent += slot.uncommitted.drain(..).map(|one| one.messages.len() as u64).sum::<u64>();
         }
         self.unsent += self.networks.kept.fail();
+        self.unsent += self.fail_memory();
         (self.uncommitted, self.last_commits) = (0, LastCommits::Over);
         self.reasons.push(text.to_owned());
         self.end_if_done(now);
@@ -205,8 +212,10 @@ impl Engine {
         self.found.of(name).map_or_else(Stored::default, |entries| Stored::new(entries.clone()))
     }
 
-    /// Uses a store from now on: what it holds, and where more goes.
-    pub(crate) fn use_store(&mut self, found: Contents, queue: Arc<StoreQueue>) {
+    /// Uses a store from now on: what it holds, and where more goes. Gives what the fleet goes on from, if it does.
+    pub(crate) fn use_store(&mut self, found: Contents, queue: Arc<StoreQueue>) -> Option<Recollection> {
+        let recollection = self.use_memory(&found, Arc::clone(&queue));
         (self.found, self.commits) = (found, Commits::InStore(queue));
+        recollection
     }
 }

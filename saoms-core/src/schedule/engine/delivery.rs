@@ -37,6 +37,9 @@ impl Engine {
     #[inline]
     pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.record(part, now);
+        if part.effects.has_new() {
+            part.effects.note_cut(self.want_cut(now));
+        }
         let events = if part.outbox.is_empty() { Vec::new() } else { self.events_to_keep(part) };
         if !part.to_keep.is_empty() || !events.is_empty() {
             self.keep(part, events, now);
@@ -72,7 +75,7 @@ impl Engine {
         let network = self.slots[index as usize].network;
         for (topic, message) in messages {
             if network != NO_NETWORK {
-                self.put_on_network(network, name, topic, &message);
+                self.put_on_network(network, name, topic, &message, now);
             }
             if let Some(trace) = &mut self.trace {
                 trace.message(now, index, self.bus.name_hash(topic), &message);

@@ -34,6 +34,7 @@ impl Engine {
             return;
         }
         self.stops.request_all();
+        self.end_memory();
         self.phase = RunPhase::Stopping;
         self.cause = Some(cause);
         self.ended = (now, sys::monotonic());

@@ -70,7 +70,10 @@ impl Engine {
         if matches!(job, Job::Start | Job::Shutdown | Job::Order) {
             body.part.collection.reset();
         }
-        if !self.real && self.phase == RunPhase::Running && !matches!(job, Job::Ask | Job::Describe | Job::Order) {
+        if !self.real
+            && self.phase == RunPhase::Running
+            && !matches!(job, Job::Ask | Job::Describe | Job::Order | Job::Save)
+        {
             self.begun = now;
         }
         match job {
@@ -85,7 +88,7 @@ impl Engine {
                 body.part.is_ending = self.phase == RunPhase::Stopping;
                 body.part.retries_shutdown = self.phase != RunPhase::Stopping || self.out > 1;
             }
-            Job::Ask | Job::Describe => {}
+            Job::Ask | Job::Describe | Job::Save => {}
             Job::Order => self.begin_order(index, &mut body, now),
             Job::Start => {
                 let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
@@ -95,7 +98,10 @@ impl Engine {
                 body.part.chance = Chance::for_component(seed, &slot.name);
                 body.part.due = now;
                 body.part.execution = 0;
-                body.part.lasting.saves = slot.policy.restarts > 0 && slot.spec.class.declaration().saves;
+                let declared = slot.spec.class.declaration();
+                body.part.lasting.saves = slot.policy.restarts > 0 && declared.saves;
+                body.part.lasting.outlives = declared.saves && self.memory.is_on();
+                body.part.lasting.saves_at_once = declared.saves && declared.apart && self.memory.is_on();
                 body.part.heartbeats = self.heartbeats_of(index);
                 body.part.heartbeats_elsewhere = self.heartbeats_elsewhere(index);
                 if body.part.heartbeats_elsewhere.is_some() {
@@ -162,6 +168,7 @@ impl Engine {
         // Only the holder of the lock writes.
         self.executions.store(self.executions.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
         self.collect(index, body, false, now);
+        self.note_reading(index, &body.part, &body.inboxes);
     }
 
     /// Collects the messages of an execution, or of a reaction: those of the topics that trigger it.
@@ -275,13 +282,14 @@ impl Engine {
             }
             Ok(()) => {
                 let held = body.part.held;
+                self.note_saved(&body.part, job == Job::Save, ended);
                 if !held {
                     self.deliver(&mut body.part, ended);
                 }
                 let vote = body.part.vote.take_if(|_| !held);
                 let slot = &mut self.slots[index as usize];
                 match job {
-                    Job::Execute | Job::React | Job::Order | Job::Shutdown => {}
+                    Job::Execute | Job::React | Job::Order | Job::Save | Job::Shutdown => {}
                     Job::Describe => slot.described = body.part.described.take(),
                     Job::Ask => {
                         slot.waits_for = body.part.waits_for.take();
@@ -289,7 +297,9 @@ impl Engine {
                     }
                     Job::Start => {
                         body.fit_inboxes();
+                        self.recall_unread(&mut body);
                         body.give_unread(&self.bus);
+                        self.note_inbox(index);
                     }
                 }
                 self.slots[index as usize].body = Some(body);
@@ -298,7 +308,7 @@ impl Engine {
                 }
                 match job {
                     Job::Execute | Job::React => self.executed(index, ended),
-                    Job::Ask | Job::Describe | Job::Order => self.answered(index, ended),
+                    Job::Ask | Job::Describe | Job::Order | Job::Save => self.answered(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
                 }
@@ -313,6 +323,7 @@ impl Engine {
             self.ending.extend(self.ending_later.drain(..));
         }
         self.has_returned |= self.awaited > 0;
+        self.retry_cut();
         if self.has_orders() {
             self.look_at = 0;
             self.wake |= self.roles.asleep_until != 0;

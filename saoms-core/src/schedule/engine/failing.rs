@@ -60,12 +60,13 @@ impl Engine {
         let unsent = part.outbox.len();
         part.outbox.clear();
         part.to_keep.clear();
+        part.effects.forget_new();
         let uncommitted = self.take_back_uncommitted(part);
         part.sent_bytes = 0;
         part.vote = None;
         let doing = match job {
             Job::Start => "could not start: ",
-            Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Order => "",
+            Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Order | Job::Save => "",
             Job::Shutdown => "could not shut down: ",
         };
         let spec = part.blamed.take().map_or(&part.spec, |other| &self.slots[other as usize].spec);
@@ -113,6 +114,9 @@ impl Engine {
             body.part.lasting.forget();
         }
         self.keep_subscriptions(body);
+        self.note_saved(&body.part, false, now);
+        self.note_inbox(index);
+        self.note_differs(index, now);
         let slot = &mut self.slots[index as usize];
         let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
         match pause {

@@ -23,6 +23,7 @@ impl Engine {
         if !running || !self.slots[index as usize].policy.periodic {
             return;
         }
+        self.note_differs(index, now);
         match request {
             Request::Schedule { lasting } => self.schedule(index, lasting, now),
             Request::Unschedule => self.unschedule(index, now),
@@ -110,6 +111,7 @@ impl Engine {
     /// Handles the return of a component's initialization.
     pub(crate) fn started(&mut self, index: u32, now: u64) {
         self.release_kept(index, now);
+        self.note_differs(index, now);
         let slot = &mut self.slots[index as usize];
         slot.state = SlotState::Active;
         let (number, again) = (slot.restarts, std::mem::take(&mut slot.restarting));
@@ -136,6 +138,9 @@ impl Engine {
 
     /// Handles the end of a component's shutdown.
     pub(crate) fn left(&mut self, index: u32, now: u64) {
+        if self.memory.takes_now(self.phase) {
+            self.note_differs(index, now);
+        }
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
         self.stop_its_hardware(index);
@@ -172,6 +177,7 @@ impl Engine {
             body.part.lasting.forget();
             self.keep_subscriptions(&mut body);
             self.release(index, &mut body, now);
+            self.note_saved(&body.part, false, now);
             self.slots[index as usize].body = Some(body);
         }
     }

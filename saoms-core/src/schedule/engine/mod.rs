@@ -8,6 +8,7 @@ mod execution;
 pub(super) mod failing;
 pub(super) mod faults;
 pub(super) mod lifecycle;
+pub(super) mod memory;
 mod notices;
 mod overrun;
 pub(super) mod queue;
@@ -27,6 +28,7 @@ use saoms_api::{Failure, Time};
 
 use self::commit::{Commits, LastCommits};
 use self::ending::EndCause;
+use self::memory::Memory;
 use self::queue::Queue;
 use self::slot::{NEVER, Slot, SlotState};
 use self::standstill::StandstillDetector;
@@ -105,6 +107,8 @@ pub(crate) struct Engine {
     pub(crate) uncommitted: usize,
     pub(crate) last_commits: LastCommits,
     pub(crate) found: Contents,
+    /// What outlives the program beside that.
+    pub(crate) memory: Memory,
     /// Messages that are never sent, because what they depend on cannot be committed.
     pub(crate) unsent: u64,
     /// The takers of events since the last change of the fleet, once somebody asked for them; the number of changes.
@@ -176,6 +180,8 @@ pub(crate) enum Next {
     Run(u32, Job),
     /// Hand work over to a worker thread.
     HandOver,
+    /// Make a cut of the present moment for the memory.
+    Cut,
     /// Sleep until this time.
     Wait(u64),
     /// The run is over.
@@ -220,6 +226,7 @@ impl Engine {
             uncommitted: 0,
             last_commits: LastCommits::None,
             found: Contents::default(),
+            memory: Memory::new(),
             unsent: 0,
             takers: (None, 0),
             speakers: None,
@@ -251,7 +258,9 @@ impl Engine {
                     if now >= self.hold {
                         match self.next_while_paused(now) {
                             Some(next) => return next,
-                            None if self.phase == RunPhase::Running => return Next::Wait(NEVER),
+                            None if self.phase == RunPhase::Running => {
+                                return self.next_for_cut_while_paused(now).unwrap_or(Next::Wait(NEVER));
+                            }
                             None => continue,
                         }
                     }
@@ -259,6 +268,11 @@ impl Engine {
                     if now >= self.limit && self.earliest().is_none_or(|when| when >= self.limit) {
                         self.begin_stop(EndCause::Elapsed, self.limit);
                         continue;
+                    }
+                    if now >= self.memory.due_at_last
+                        && let Some(cut) = self.next_for_cut(now)
+                    {
+                        return cut;
                     }
                     // One comparison in most executions.
                     if now >= self.look_at {
@@ -286,12 +300,16 @@ impl Engine {
                         self.look_at = self.injections.earliest().map_or(quiet, |when| when.min(quiet));
                     }
                     let Some((when, index)) = self.queue.pop_due(now) else {
+                        if let Some(cut) = self.next_for_cut(now) {
+                            return cut;
+                        }
                         if let Some(question) = self.next_question() {
                             return question;
                         }
                         // Real time passes also where nobody executes: a standstill is told then, too.
                         let look_at = if self.real { self.look_at } else { NEVER };
-                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(look_at).min(self.limit));
+                        let other = look_at.min(self.limit).min(self.next_cut());
+                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(other));
                     };
                     let slot = &mut self.slots[index as usize];
                     if slot.entry != when {
@@ -308,6 +326,7 @@ impl Engine {
                         return Next::Run(index, job);
                     }
                 }
+                RunPhase::Stopping if self.is_last_cut_due() => return self.next_for_last_cut(),
                 RunPhase::Stopping => match self.next_to_end() {
                     Some(index) => return Next::Run(index, Job::Shutdown),
                     None if self.out == 0 => self.phase = RunPhase::Ended,

@@ -11,10 +11,14 @@ impl Engine {
     /// Tells the site of a component that it failed and lost what it knew. One that never executed had nothing.
     #[cold]
     pub(super) fn tell_outage(&mut self, index: u32, restarts: bool, now: u64) {
-        let slot = &self.slots[index as usize];
-        if self.phase != RunPhase::Running || slot.last_due.is_none() {
-            return;
+        if self.phase == RunPhase::Running && self.slots[index as usize].last_due.is_some() {
+            self.tell_loss(index, restarts, now);
         }
+    }
+
+    /// Tells the site of a component that it lost what it knew.
+    pub(super) fn tell_loss(&mut self, index: u32, restarts: bool, now: u64) {
+        let slot = &self.slots[index as usize];
         let number = slot.spec.class.declaration().speaker(&slot.spec.values);
         let Some(number) = number.and_then(|number| u32::try_from(number).ok()) else { return };
         let outage = Outage { number, since: Time::from_nanos(now), restarts };

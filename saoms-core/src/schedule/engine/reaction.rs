@@ -77,5 +77,6 @@ impl Engine {
         slot.statistics.reactions += 1;
         body.part.due = due;
         self.collect(index, body, true, now);
+        self.note_reading(index, &body.part, &body.reactions);
     }
 }

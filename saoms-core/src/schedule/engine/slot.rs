@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::commit::Uncommitted;
+use super::memory::SlotMemory;
 use super::overrun::{self, Decision};
 use crate::journal::Ring;
 use crate::report::Lateness;
@@ -69,6 +70,8 @@ pub(crate) struct Slot {
     /// Executions that kept something which is not committed.
     pub(crate) uncommitted: VecDeque<Uncommitted>,
     pub(crate) journal: Ring,
+    /// What outlives the program.
+    pub(crate) memory: SlotMemory,
     /// Specification of the component, the same as in its body.
     pub(crate) spec: Arc<ComponentSpec>,
     /// True if it has ever joined the fleet.
@@ -289,6 +292,7 @@ impl Slot {
             is_cut_off: false,
             network: NO_NETWORK,
             journal: Ring::default(),
+            memory: SlotMemory::default(),
             overrun_failure: None,
             name,
             cancelled,

@@ -22,6 +22,11 @@ pub(crate) struct Ballot {
 }
 
 impl Ballot {
+    /// The last word of a component in an earlier program.
+    pub(super) fn recalled(left: Option<bool>, gave_up: bool) -> Ballot {
+        Ballot { left, gave_up }
+    }
+
     /// True if its component said that no work is left.
     pub(crate) fn is_done(self) -> bool {
         self.left == Some(false)
@@ -47,6 +52,7 @@ impl Engine {
     pub(crate) fn note_vote(&mut self, index: u32, ballot: Ballot, now: u64) {
         let slot = &mut self.slots[index as usize];
         if ballot.gave_up && !std::mem::replace(&mut slot.gave_up, true) {
+            self.note_differs(index, now);
             self.step(now, index, TraceStep::GaveUp);
         }
         let Some(left) = ballot.left else { return };
@@ -54,6 +60,7 @@ impl Engine {
         if before == Some(left) {
             return;
         }
+        self.note_differs(index, now);
         self.votes.voters += usize::from(before.is_none());
         match left {
             false => self.votes.done += 1,

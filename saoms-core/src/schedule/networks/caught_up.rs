@@ -20,8 +20,8 @@ pub(super) struct Mark {
 #[derive(Debug)]
 struct Reader {
     index: u32,
-    /// Once it has executed: the last batch of what it kept until then.
-    batch: Option<u64>,
+    /// Once it has executed: the last batch of what it kept until then, and the cut that has what it did.
+    executed: Option<(u64, u64)>,
 }
 
 impl Engine {
@@ -35,24 +35,30 @@ impl Engine {
         let readers = (0..self.slots.len() as u32).filter(of_network);
         Mark {
             ends: events.filter_map(|topic| Some((topic, self.bus.event_end(topic)?))).collect(),
-            readers: readers.map(|index| Reader { index, batch: None }).collect(),
+            readers: readers.map(|index| Reader { index, executed: None }).collect(),
         }
     }
 
     /// Leaves those in a mark that still have something to do.
-    fn look_at_mark(&self, mark: &mut Mark) {
+    fn look_at_mark(&mut self, mark: &mut Mark, now: u64) {
         let Mark { ends, readers } = mark;
         readers.retain_mut(|reader| {
             let slot = &self.slots[reader.index as usize];
             if !slot.is_alive() {
                 return false;
             }
-            if reader.batch.is_none() && self.has_executed(reader.index, ends) {
-                reader.batch = Some(slot.uncommitted.back().map_or(0, |last| last.number));
+            if reader.executed.is_none() && self.has_executed(reader.index, ends) {
+                let batch = slot.uncommitted.back().map_or(0, |last| last.number);
+                let cut = if self.memory.is_on() { self.want_cut(now) } else { 0 };
+                reader.executed = Some((batch, cut));
             }
-            let is_committed =
-                |batch: u64| slot.uncommitted.front().is_none_or(|first| first.number > batch) && !slot.is_cut_off;
-            !reader.batch.is_some_and(is_committed)
+            let slot = &self.slots[reader.index as usize];
+            let is_committed = |(batch, cut): (u64, u64)| {
+                slot.uncommitted.front().is_none_or(|first| first.number > batch)
+                    && !slot.is_cut_off
+                    && self.memory.is_committed(cut)
+            };
+            !reader.executed.is_some_and(is_committed)
         });
     }
 
@@ -84,7 +90,7 @@ impl NetworkedFleet {
         let mut engine = self.shared.lock();
         let mut mark = engine.networks.marks.remove(&self.network).unwrap_or_default();
         let is_over = !matches!(engine.phase, RunPhase::Starting | RunPhase::Running);
-        engine.look_at_mark(&mut mark);
+        engine.look_at_mark(&mut mark, self.shared.clock.now());
         let has_passed = is_over || mark.readers.is_empty();
         if !has_passed {
             engine.networks.marks.insert(self.network, mark);

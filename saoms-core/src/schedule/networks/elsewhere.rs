@@ -109,6 +109,23 @@ impl RemoteNames {
         self.read().names.get(number.checked_sub(FIRST)? as usize).copied()
     }
 
+    /// The names from this place on, in the order of their numbers.
+    pub(in crate::schedule) fn from(&self, place: usize) -> Vec<&'static str> {
+        self.read().names.get(place..).unwrap_or_default().to_vec()
+    }
+
+    /// Gives numbers to these names, in this order.
+    pub(in crate::schedule) fn recall(&self, names: &[String]) {
+        for name in names {
+            let _ = self.number(name);
+        }
+    }
+
+    /// The number of the component with this name, if it has one.
+    pub(in crate::schedule) fn find(&self, name: &str) -> Option<u32> {
+        self.read().numbers.get(name).copied()
+    }
+
     /// The number of the component with this name. Names stay: a component that comes again has the same number.
     fn number(&self, name: &str) -> u32 {
         if let Some(number) = self.read().numbers.get(name) {

@@ -125,17 +125,22 @@ impl Engine {
     }
 
     /// Leaves a message for a network that no component sent; an event once it is in the state folder, if there is one.
-    pub(super) fn put_outside(&mut self, network: u8, by: &Arc<str>, topic: TopicId, message: &SharedMessage) {
+    pub(super) fn put_outside(
+        &mut self,
+        network: u8,
+        by: &Arc<str>,
+        topic: TopicId,
+        message: &SharedMessage,
+        now: u64,
+    ) {
         if self.bus.kind(topic) != TopicKind::Event || !self.keeps_events() {
-            return self.put_on_network(network, by, topic, message);
+            return self.put_on_network(network, by, topic, message, now);
         }
         let change = self.event_to_keep(network, by, topic, message);
         let message = self.for_network(by, topic, message, Some(change.key));
         self.batches += 1;
         let batch = self.batches;
-        if let Commits::InStore(queue) = &self.commits {
-            queue.put(Batch { index: NOBODY, number: batch, changes: vec![change] });
-        }
+        self.hand_over(NOBODY, batch, vec![change], now);
         self.uncommitted += 1;
         self.networks.kept.outside.push_back(Outside { batch, network, topic, message });
     }
@@ -192,10 +197,11 @@ impl NetworkedFleet {
             memory.events.insert(topic, events);
             engine.found.forget(&entry);
         }
+        memory.received = engine.recall_received(&url);
         engine.found.forget(&own);
         let starts = Starts { origin: memory.origin, last: memory.start };
         let change = Change { component: own, key: 0, bytes: Some(cdr::encode(&starts).into()) };
-        queue.put(Batch { index: NOBODY, number: 0, changes: vec![change] });
+        queue.put(Batch { index: NOBODY, number: 0, changes: vec![change], later: None });
         self.shared.release(engine);
         Some(memory)
     }
@@ -226,7 +232,7 @@ impl NetworkedFleet {
             }
         }
         if !queue.has_failed() {
-            queue.put(Batch { index: NOBODY, number: 0, changes: all });
+            queue.put(Batch { index: NOBODY, number: 0, changes: all, later: None });
         }
     }
 }

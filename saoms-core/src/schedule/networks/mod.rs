@@ -65,7 +65,7 @@ impl Networks {
     }
 
     /// The url of a network.
-    fn url(&self, network: u8) -> String {
+    pub(super) fn url(&self, network: u8) -> String {
         self.all.get(usize::from(network)).map(|(url, _)| url.clone()).unwrap_or_default()
     }
 
@@ -101,11 +101,16 @@ impl Engine {
         component: &Arc<str>,
         topic: TopicId,
         message: &SharedMessage,
+        now: u64,
     ) {
         let is_event = self.bus.kind(topic) == TopicKind::Event;
         let number = if is_event { self.networks.kept.leaves(network, topic) } else { None };
         let from_run = self.for_network(component, topic, message, number);
-        self.networks.waiting.push((network, from_run));
+        match number {
+            // It was kept, and is committed.
+            Some(_) => self.networks.waiting.push((network, from_run)),
+            None => self.leave_for_network(network, from_run, now),
+        }
     }
 
     /// A message as a network takes it.
@@ -132,9 +137,9 @@ impl Engine {
 
     /// Leaves a message for all networks of the components that use its topic: one that comes from outside, or that
     /// tells of a component.
-    pub(super) fn put_on_networks(&mut self, component: &Arc<str>, topic: TopicId, message: &SharedMessage) {
+    pub(super) fn put_on_networks(&mut self, component: &Arc<str>, topic: TopicId, message: &SharedMessage, now: u64) {
         for network in self.networks.topics.get(&topic).cloned().unwrap_or_default() {
-            self.put_outside(network, component, topic, message);
+            self.put_outside(network, component, topic, message, now);
         }
     }
 
@@ -173,7 +178,7 @@ impl Engine {
     }
 
     /// Takes messages of other programs on a topic, as many as find room.
-    fn deliver_from_network(&mut self, topic: &Arc<str>, waiting: &mut VecDeque<Arrived>, now: u64) {
+    fn deliver_from_network(&mut self, network: usize, topic: &Arc<str>, waiting: &mut VecDeque<Arrived>, now: u64) {
         let found = match self.phase {
             // Its components are about to be there.
             RunPhase::Starting => return,
@@ -186,6 +191,9 @@ impl Engine {
         while self.bus.has_room(topic)
             && let Some(mut arrived) = waiting.pop_front()
         {
+            if self.bus.kind(topic) == TopicKind::Event {
+                self.note_received(network, topic, (arrived.origin, arrived.number), now);
+            }
             let to = (!arrived.to.is_empty()).then(|| self.numbers.get(arrived.to.as_str()).copied());
             // One that is for a component of another program, or that is no message of the topic, is nothing here.
             if to == Some(None) || schema.check(&arrived.bytes).is_err() {
@@ -219,7 +227,7 @@ impl Engine {
     }
 
     /// The schema of a topic, with its hash.
-    fn schema_of(&mut self, topic: TopicId) -> &(u64, Option<Arc<Schema>>) {
+    pub(super) fn schema_of(&mut self, topic: TopicId) -> &(u64, Option<Arc<Schema>>) {
         let bus = &self.bus;
         self.networks.schemas.entry(topic).or_insert_with(|| {
             let text = bus.schema(topic);
@@ -288,7 +296,7 @@ impl Fleet for NetworkedFleet {
         let mut engine = shared.lock();
         let now = shared.clock.now();
         messages.retain(|topic, waiting| {
-            engine.deliver_from_network(topic, waiting, now);
+            engine.deliver_from_network(self.network, topic, waiting, now);
             !waiting.is_empty()
         });
         shared.release(engine);

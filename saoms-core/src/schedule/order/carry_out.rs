@@ -18,6 +18,7 @@ use crate::observe::Occurrence;
 use crate::schedule::change::{self, SetError};
 use crate::schedule::component::body::Body;
 use crate::schedule::engine::lifecycle::Request;
+use crate::schedule::engine::memory::{SetForm, value_hash};
 use crate::schedule::engine::slot::NEVER;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::inject::{self, InjectedContent, Injection, OUTSIDE_NAME};
@@ -114,6 +115,16 @@ pub(in crate::schedule) fn accept(shared: &Shared, order: Order, at: Option<Time
 }
 
 impl PendingOrder {
+    /// An order that was accepted by an earlier program, and has no answer any more.
+    pub(in crate::schedule) fn recalled(order: Order) -> PendingOrder {
+        PendingOrder { order, answering: None, part_of: None }
+    }
+
+    /// Its line.
+    pub(in crate::schedule) fn line(&self) -> String {
+        self.order.to_string()
+    }
+
     fn is_cancelled(&self) -> bool {
         self.answering.as_ref().is_some_and(Answering::is_cancelled)
     }
@@ -371,8 +382,19 @@ impl Engine {
             (None, Some(failure)) => Err(OrderError::Call(format!("component `{}` failed: {failure}", slot.name))),
             (None, None) => Ok(Value::Null),
         };
+        let set = match (&order.order, &answer) {
+            (Order::Set { property, value, .. }, Ok(_)) if property != STOPPED => {
+                let (property, value) = (property.clone(), value.clone());
+                Some(SetForm { instead_of: value_hash(&slot.spec, &property), property, value })
+            }
+            _ => None,
+        };
         // It may have another value of a property.
         slot.spec = Arc::clone(&body.part.spec);
+        body.part.lasting.touch();
+        if let Some(set) = set {
+            self.note_set(index, set, now);
+        }
         let OrderInCode { order, answering, .. } = order;
         self.answer(now, &order, answering, answer);
     }

@@ -6,9 +6,10 @@ use super::sys;
 /// The time of a run in nanoseconds since its start, from the machine's clock or from a number that jumps.
 #[derive(Debug)]
 pub(crate) enum Clock {
-    /// The machine's monotonic clock: `start` is the start of the run on it, `zero` the local date of its zero. Until
-    /// the start the time is zero. While the run is paused, `held` is its time; otherwise it is `u64::MAX`.
-    Real { start: AtomicU64, held: AtomicU64, zero: u64 },
+    /// The machine's monotonic clock: `start` is the zero of the run on it, `zero` the local date of its zero. Until
+    /// the start the time is `origin`: zero, or the time from which an earlier program's run goes on. While the run is
+    /// paused, `held` is its time; otherwise it is `u64::MAX`.
+    Real { start: AtomicU64, held: AtomicU64, origin: AtomicU64, zero: u64 },
     /// From one due execution to the next.
     Virtual { now: AtomicU64 },
 }
@@ -16,7 +17,8 @@ pub(crate) enum Clock {
 impl Clock {
     pub(crate) fn real() -> Clock {
         let zero = sys::local_date().saturating_sub(sys::monotonic());
-        Clock::Real { start: AtomicU64::new(u64::MAX), held: AtomicU64::new(u64::MAX), zero }
+        let never = || AtomicU64::new(u64::MAX);
+        Clock::Real { start: never(), held: never(), origin: AtomicU64::new(0), zero }
     }
 
     pub(crate) fn simulated() -> Clock {
@@ -27,18 +29,33 @@ impl Clock {
         matches!(self, Clock::Virtual { .. })
     }
 
-    /// Starts the run: now is zero.
+    /// Has the run start at this time, before it starts.
+    pub(crate) fn begin_at(&self, time: u64) {
+        if let Clock::Real { origin, .. } = self {
+            origin.store(time, Ordering::Relaxed);
+        }
+    }
+
+    /// The time at which the run starts.
+    pub(crate) fn origin(&self) -> u64 {
+        match self {
+            Clock::Real { origin, .. } => origin.load(Ordering::Relaxed),
+            Clock::Virtual { .. } => 0,
+        }
+    }
+
+    /// Starts the run: now is its origin.
     pub(crate) fn start(&self) {
         if let Clock::Real { start, .. } = self {
-            start.store(sys::monotonic(), Ordering::Relaxed);
+            start.store(sys::monotonic().wrapping_sub(self.origin()), Ordering::Relaxed);
         }
     }
 
     #[inline]
     pub(crate) fn now(&self) -> u64 {
         match self {
-            Clock::Real { start, held, .. } => match held.load(Ordering::Acquire) {
-                u64::MAX => sys::monotonic().saturating_sub(start.load(Ordering::Relaxed)),
+            Clock::Real { held, .. } => match held.load(Ordering::Acquire) {
+                u64::MAX => self.now_without_pause(),
                 held => held,
             },
             Clock::Virtual { now } => now.load(Ordering::Relaxed),
@@ -48,8 +65,11 @@ impl Clock {
     /// The time of the run as if it had not paused: for what goes on meanwhile.
     pub(crate) fn now_without_pause(&self) -> u64 {
         match self {
-            Clock::Real { start, .. } => sys::monotonic().saturating_sub(start.load(Ordering::Relaxed)),
-            Clock::Virtual { .. } => self.now(),
+            Clock::Real { start, .. } => match start.load(Ordering::Relaxed) {
+                u64::MAX => self.origin(),
+                start => sys::monotonic().wrapping_sub(start),
+            },
+            Clock::Virtual { now } => now.load(Ordering::Relaxed),
         }
     }
 
@@ -57,7 +77,11 @@ impl Clock {
     pub(crate) fn on_machine(&self, time: u64) -> u64 {
         match self {
             Clock::Real { start, held, .. } => match held.load(Ordering::Relaxed) {
-                u64::MAX => start.load(Ordering::Relaxed).saturating_add(time),
+                u64::MAX => match start.load(Ordering::Relaxed) {
+                    u64::MAX => u64::MAX,
+                    // The zero of a run that an earlier start of the machine began is before the zero of the clock.
+                    start => (start.cast_signed().saturating_add_unsigned(time)).max(0).cast_unsigned(),
+                },
                 held => sys::monotonic().saturating_add(time).saturating_sub(held),
             },
             Clock::Virtual { .. } => time,
@@ -78,7 +102,7 @@ impl Clock {
         if time != u64::MAX {
             // Before the start there is nothing to move.
             if start.load(Ordering::Relaxed) != u64::MAX {
-                start.store(sys::monotonic().saturating_sub(time), Ordering::Relaxed);
+                start.store(sys::monotonic().wrapping_sub(time), Ordering::Relaxed);
             }
             // Whoever sees that it goes on has to see from where.
             held.store(u64::MAX, Ordering::Release);

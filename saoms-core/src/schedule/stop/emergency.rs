@@ -84,6 +84,8 @@ impl Engine {
             let slot = &mut self.slots[*index as usize];
             slot.set_stopped(is_stopped);
             slot.stops_again &= is_stopped;
+            self.note_differs(*index, now);
+            let slot = &mut self.slots[*index as usize];
             if slot.hears_stops {
                 self.queue_stopped(*index, is_stopped, cause);
             } else if !is_stopped && slot.state == SlotState::Active && slot.body.is_some() {

@@ -5,7 +5,7 @@ mod journal;
 
 use std::convert::Infallible;
 use std::io::{self, BufRead, Read};
-use std::path::Path;
+use std::path::{self, Path};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -21,6 +21,7 @@ use saoms_api::{Level, Time};
 use saoms_core::schedule::{
     Handle, Hold, InjectError, InjectedContent, Injection, Order, OrderTicket, RaiseError, TimedOrder,
 };
+use saoms_core::status::FleetPhase;
 use saoms_lang::load::wide_encoding;
 
 pub(super) use input::Unreadable;
@@ -37,7 +38,12 @@ pub(super) struct Events {
     languages: Languages,
     /// The number of the line that was read last, from 1.
     number: usize,
+    /// The name under which the memory of the fleet has how many lines of a file were taken.
+    cursor: Option<String>,
 }
+
+/// Time between two looks whether the disk has space again, while lines wait for that.
+const BETWEEN_TRIES: Duration = Duration::from_millis(100);
 
 impl Events {
     /// Opens a file, or standard input where the path is `-`.
@@ -46,7 +52,9 @@ impl Events {
     /// Why it cannot be read.
     pub(super) fn open(path: &Path, numbers: &Numbers) -> Result<Events, Unreadable> {
         let lines = input::open(path)?;
-        Ok(Events { lines, languages: Languages::of(("(outside)", "a line of `--events`"), numbers), number: 0 })
+        let languages = Languages::of(("(outside)", "a line of `--events`"), numbers);
+        let cursor = path.is_file().then(|| format!("events {}", path::absolute(path).unwrap_or_default().display()));
+        Ok(Events { lines, languages, number: 0, cursor })
     }
 
     /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
@@ -71,10 +79,21 @@ impl Events {
 
     fn read_all(&mut self, handle: &Handle) {
         let mut line = Vec::new();
+        let cursor = self.cursor.take();
+        let taken = cursor.as_ref().map_or(0, |cursor| handle.counter(cursor));
         loop {
             match self.next(&mut line) {
                 Ok(false) => return,
-                Ok(true) => self.take(&line, handle),
+                // An earlier program took it.
+                Ok(true) if self.number as u64 <= taken => {}
+                Ok(true) => {
+                    wait_for_space(handle);
+                    let _together = handle.together();
+                    self.take(&line, handle);
+                    if let Some(cursor) = &cursor {
+                        handle.set_counter(cursor, self.number as u64);
+                    }
+                }
                 Err(error) => {
                     return handle.note(Level::Error, format!("the events cannot be read any more: {error}"));
                 }
@@ -130,6 +149,13 @@ impl Events {
     }
 }
 
+/// Waits as long as no new work is accepted.
+fn wait_for_space(handle: &Handle) {
+    while handle.refusal_of_work().is_some() && handle.phase() == FleetPhase::Running {
+        thread::sleep(BETWEEN_TRIES);
+    }
+}
+
 /// What the events of all sources of a run number together.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers {
@@ -140,6 +166,11 @@ pub(super) struct Numbers {
 impl Numbers {
     pub(super) fn new(seed: u64) -> Numbers {
         Numbers { seed, numbers: Arc::default() }
+    }
+
+    /// Has the numbers outlive the program, so that none is given twice.
+    pub(super) fn outlive(&self, handle: &Handle) {
+        handle.share_counter("numbers of events", &self.numbers);
     }
 }
 
@@ -176,7 +207,15 @@ impl Languages {
             return Err("found several lines, expected one line, with `;` between events".to_owned());
         }
         let now = handle.progress().time;
-        let sent = match Order::read(line) {
+        let order = Order::read(line);
+        let is_work = order
+            .as_ref()
+            .is_none_or(|order| order.as_ref().is_ok_and(|timed| matches!(timed.order, Order::Publish { .. })));
+        if let Some(refusal) = handle.refusal_of_work().filter(|_| is_work) {
+            return Err(refusal);
+        }
+        let _together = handle.together();
+        let sent = match order {
             Some(order) => order_given(line, order, handle).map(|(ticket, at)| Sent::Order(ticket, at)),
             None => self.events(line, now, handle).map(Sent::Events),
         };
@@ -382,6 +421,7 @@ mod tests {
             lines,
             languages: Languages::of(("(outside)", "a line of `--events`"), &Numbers::new(0)),
             number: 0,
+            cursor: None,
         };
         let (mut line, mut lengths) = (Vec::new(), Vec::new());
         while events.next(&mut line).unwrap() {

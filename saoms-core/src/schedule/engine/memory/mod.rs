@@ -1,0 +1,450 @@
+//! The memory of a fleet with a state folder: after a crash, a loss of power or a usual end, the same command goes on
+//! from the last *cut*.
+//!
+//! A cut is all that the program is at one moment between two executions: what its components saved, the events that
+//! wait for them, what state topics retain, what waits from outside, the report, and the time. It is one group of the
+//! log, so that the folder has a whole cut or the one before. Between two cuts nothing is written: messages inside the
+//! program need not wait, since sender and receiver go back to the same moment. What leaves the program waits until the
+//! next cut is committed.
+
+mod cut;
+mod forms;
+mod recall;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use saoms_api::Saved;
+use saoms_api::host::SharedMessage;
+
+pub(in crate::schedule) use self::forms::{AlertForm, InputForm, InputMessage, InputsForm, SetForm, is_of_memory};
+use self::recall::Recalled;
+pub(in crate::schedule) use self::recall::{Recollection, recall_report, value_hash};
+use super::slot::{NEVER, SlotState};
+use super::{Engine, Next, RunPhase};
+use crate::bus::TopicId;
+use crate::network::FromRun;
+use crate::schedule::component::body::{Job, Part};
+use crate::store::{Batch, Change, StoreQueue};
+
+/// Time between two cuts on which nothing waits: the most of what simulated components did that is done again.
+const BETWEEN_CUTS: u64 = 500_000_000;
+/// Time after which a cut on which something waits does not wait for a pause of the timer any more.
+const PATIENCE: u64 = 2_000_000;
+
+/// Time for which a cut waits for code that runs on another thread, and has to be in it.
+const CODE_PATIENCE: u64 = 1_000_000_000;
+
+/// In place of the number of a component: a cut.
+pub(in crate::schedule) const CUT: u32 = u32::MAX - 1;
+
+/// The memory of a fleet.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    /// Where cuts go; `None` where there is no state folder, or it has failed.
+    queue: Option<Arc<StoreQueue>>,
+    /// The time from which a cut is due, however busy the timer is: `NEVER` while none is wanted.
+    pub(crate) due_at_last: u64,
+    /// The time since which something waits for the next cut, and since which it would differ from the last one.
+    wanted_since: u64,
+    differs_since: u64,
+    /// Number of cuts that were made, and of those that are committed.
+    made: u64,
+    committed: u64,
+    /// Number of those who must not see a cut before they have finished.
+    guards: usize,
+    /// Time until which a cut waits for code that runs, if it does.
+    waits_until: Option<u64>,
+    /// Components with events that they were given and have not handled.
+    with_inbox: Vec<u32>,
+    ending: Ending,
+    /// Components that differ from the last cut, and those that have to save before the next one.
+    differing: Vec<u32>,
+    touched: Vec<u32>,
+    /// Changes for the next cut, with their bytes in the queue, and the components whose messages wait for them.
+    changes: Vec<Change>,
+    announced: usize,
+    waiting: Vec<u32>,
+    /// What leaves the program once the next cut is committed.
+    outgoing: Vec<(u8, FromRun)>,
+    /// The cuts that are written: one, and at the end of the run the last one.
+    writing: VecDeque<Writing>,
+    /// What waits from outside when the run ends.
+    last_inputs: Option<InputsForm>,
+    /// The last change of each topic in the last cut.
+    topics: Vec<u64>,
+    /// Number of components of this program, and of others, whose paths the last cut has.
+    named: (usize, usize),
+    /// How far events of other programs were received, by networks, topics and first starts of the programs; and which
+    /// of that the last cut does not have.
+    received: BTreeMap<(String, Arc<str>, u64), u64>,
+    newly_received: BTreeSet<(String, Arc<str>, u64)>,
+    /// Counters of the program beside the engine.
+    counters: BTreeMap<String, Counter>,
+    /// What an earlier program left, until the fleet has started.
+    pub(crate) recalled: Option<Box<Recalled>>,
+}
+
+/// A counter of the program beside the engine.
+#[derive(Clone, Debug)]
+pub(crate) enum Counter {
+    /// It counts by itself.
+    Shared(Arc<AtomicU32>),
+    /// It was set to this.
+    Set(u64),
+}
+
+impl Counter {
+    pub(super) fn value(&self) -> u64 {
+        match self {
+            Counter::Shared(count) => u64::from(count.load(Ordering::Relaxed)),
+            Counter::Set(value) => *value,
+        }
+    }
+}
+
+/// A cut on its way to the disk.
+#[derive(Debug)]
+struct Writing {
+    cut: u64,
+    /// The number of the last batch in it, and the components that have some.
+    batch: u64,
+    components: Vec<u32>,
+    /// What leaves the program once it is committed.
+    outgoing: Vec<(u8, FromRun)>,
+}
+
+/// The last cut: the end of the run is no part of the memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Ending {
+    #[default]
+    Running,
+    /// The run ends, and the last cut is still to be made.
+    Due,
+    Made,
+}
+
+/// What the memory knows of a component.
+#[derive(Debug, Default)]
+pub(crate) struct SlotMemory {
+    /// What it saved when its code returned last.
+    saved: Option<Arc<Saved>>,
+    differs: bool,
+    is_touched: bool,
+    /// The events that its code has, while it runs.
+    reading: Vec<(TopicId, Vec<SharedMessage>)>,
+    /// The values that operators have set, and the alerts that it has raised.
+    pub(crate) set: Vec<SetForm>,
+    alerts: Vec<AlertForm>,
+    /// True if it goes on from what an earlier program saved, until it has started.
+    pub(crate) is_recalled: bool,
+    /// True if it was there in an earlier program, and has lost what it knew.
+    begins_anew: bool,
+}
+
+impl Memory {
+    pub(super) fn new() -> Memory {
+        Memory { due_at_last: NEVER, wanted_since: NEVER, differs_since: NEVER, ..Memory::default() }
+    }
+
+    #[inline]
+    pub(crate) fn is_on(&self) -> bool {
+        self.queue.is_some()
+    }
+
+    /// True if what an execution does counts for the next cut.
+    fn takes(&self, phase: RunPhase) -> bool {
+        self.is_on() && self.ending == Ending::Running && matches!(phase, RunPhase::Running | RunPhase::Starting)
+    }
+
+    /// The same, for others.
+    pub(super) fn takes_now(&self, phase: RunPhase) -> bool {
+        self.takes(phase)
+    }
+
+    /// The time from which a cut is due when nothing else is.
+    #[inline]
+    pub(super) fn due(&self) -> u64 {
+        let due = self.wanted_since.min(self.differs_since.saturating_add(BETWEEN_CUTS));
+        self.waits_until.map_or(due, |until| until.max(due))
+    }
+
+    fn may_cut(&self) -> bool {
+        self.is_on() && self.writing.is_empty() && self.guards == 0
+    }
+
+    /// The number of the cut that has all that happened so far.
+    pub(crate) fn next(&self) -> u64 {
+        self.made + 1
+    }
+
+    pub(crate) fn is_committed(&self, cut: u64) -> bool {
+        self.committed >= cut
+    }
+
+    /// True if what happens outside waits for a cut that will come.
+    pub(crate) fn has_uncommitted(&self) -> bool {
+        self.is_on() && (!self.outgoing.is_empty() || !self.writing.is_empty() || self.ending == Ending::Due)
+    }
+
+    fn schedule(&mut self) {
+        self.due_at_last = match self.may_cut() {
+            true => {
+                let due = self.differs_since.saturating_add(2 * BETWEEN_CUTS);
+                due.min(self.wanted_since.saturating_add(PATIENCE)).max(self.waits_until.unwrap_or(0))
+            }
+            false => NEVER,
+        };
+    }
+}
+
+impl Engine {
+    /// The next thing to do for a cut that is due.
+    #[inline]
+    pub(super) fn next_for_cut(&mut self, now: u64) -> Option<Next> {
+        let is_due = self.memory.may_cut() && now >= self.memory.due();
+        if is_due { self.cut_or_save(now) } else { None }
+    }
+
+    /// The same while the fleet pauses: time stands still.
+    pub(super) fn next_for_cut_while_paused(&mut self, now: u64) -> Option<Next> {
+        let differs = self.memory.wanted_since != NEVER || self.memory.differs_since != NEVER;
+        if differs && self.memory.may_cut() { self.cut_or_save(now) } else { None }
+    }
+
+    /// The time at which the next cut is due; `NEVER` while one is written.
+    #[inline]
+    pub(super) fn next_cut(&self) -> u64 {
+        if self.memory.may_cut() { self.memory.due() } else { NEVER }
+    }
+
+    /// True at the end of the run, until its last cut is made.
+    pub(super) fn is_last_cut_due(&self) -> bool {
+        self.memory.ending == Ending::Due && self.memory.is_on()
+    }
+
+    /// A cut, or what a component has to save before; `None` while another thread runs its code.
+    #[cold]
+    fn cut_or_save(&mut self, now: u64) -> Option<Next> {
+        let is_late = self.memory.waits_until.is_some_and(|until| now >= until);
+        while let Some(index) = self.memory.touched.last().copied() {
+            let slot = &mut self.slots[index as usize];
+            let is_touched = slot.memory.is_touched && !slot.held && slot.is_alive();
+            match slot.body {
+                Some(_) if is_touched => return Some(Next::Run(index, Job::Save)),
+                // What it did since it saved has effects elsewhere. If it hangs, it goes on from what it saved.
+                None if is_touched && !is_late => {
+                    self.memory.waits_until = Some(now.saturating_add(CODE_PATIENCE));
+                    self.memory.schedule();
+                    return None;
+                }
+                _ => {
+                    slot.memory.is_touched = false;
+                    self.memory.touched.pop();
+                }
+            }
+        }
+        self.memory.waits_until = None;
+        Some(Next::Cut)
+    }
+
+    /// The last cut of a run that ends, or what a component has to save before: code that runs is not waited for.
+    pub(super) fn next_for_last_cut(&mut self) -> Next {
+        self.memory.waits_until = Some(0);
+        self.cut_or_save(NEVER).unwrap_or(Next::Cut)
+    }
+
+    /// Looks again whether a cut can be made, since some code has returned.
+    #[inline]
+    pub(super) fn retry_cut(&mut self) {
+        if self.memory.waits_until.take().is_some() {
+            self.memory.schedule();
+            self.wake |= self.roles.asleep_until != 0;
+        }
+    }
+
+    /// Notes that a component may have events that it was given and has not handled.
+    pub(crate) fn note_inbox(&mut self, index: u32) {
+        if self.memory.is_on() && !self.memory.with_inbox.contains(&index) {
+            self.memory.with_inbox.push(index);
+        }
+    }
+
+    /// Asks for a cut as soon as possible; gives its number.
+    pub(crate) fn want_cut(&mut self, now: u64) -> u64 {
+        self.memory.wanted_since = self.memory.wanted_since.min(now);
+        self.memory.schedule();
+        self.wake |= self.roles.asleep_until != 0;
+        self.memory.next()
+    }
+
+    /// Keeps cuts away until the guard is given back.
+    pub(in crate::schedule) fn guard_cut(&mut self, more: bool) {
+        self.memory.guards = if more { self.memory.guards + 1 } else { self.memory.guards - 1 };
+        self.memory.schedule();
+        self.wake |= self.roles.asleep_until != 0 && !more;
+    }
+
+    /// Notes that a component differs from the last cut.
+    pub(crate) fn note_differs(&mut self, index: u32, now: u64) {
+        if !self.memory.is_on() {
+            return;
+        }
+        if !std::mem::replace(&mut self.slots[index as usize].memory.differs, true) {
+            self.memory.differing.push(index);
+        }
+        self.note_difference(now);
+    }
+
+    /// Notes that something differs from the last cut.
+    #[inline]
+    pub(crate) fn note_difference(&mut self, now: u64) {
+        if self.memory.differs_since == NEVER && self.memory.is_on() {
+            self.memory.differs_since = now;
+            self.memory.schedule();
+        }
+    }
+
+    /// Takes over what a component saved, whose code has returned.
+    #[inline]
+    pub(crate) fn note_saved(&mut self, part: &Part, for_cut: bool, now: u64) {
+        // What a component does at the end of the run, before the last cut is made, is no part of that.
+        if self.memory.takes(self.phase) || for_cut && self.memory.is_on() {
+            self.take_saved(part, now);
+        }
+    }
+
+    #[cold]
+    fn take_saved(&mut self, part: &Part, now: u64) {
+        let memory = &mut self.slots[part.index as usize].memory;
+        memory.reading.clear();
+        let saved = part.lasting.saved();
+        let has_alerts = memory.alerts != part.alerts;
+        if has_alerts {
+            memory.alerts.clone_from(&part.alerts);
+        }
+        let is_same = match (saved, &memory.saved) {
+            (Some(saved), Some(known)) => Arc::ptr_eq(saved, known),
+            (None, None) => true,
+            _ => false,
+        };
+        if part.lasting.is_touched() && !std::mem::replace(&mut memory.is_touched, true) {
+            self.memory.touched.push(part.index);
+            self.note_difference(now);
+        }
+        let memory = &mut self.slots[part.index as usize].memory;
+        if !part.lasting.is_touched() {
+            memory.is_touched = false;
+        }
+        if !is_same || has_alerts {
+            memory.saved = saved.map(Arc::clone);
+            self.note_differs(part.index, now);
+        } else {
+            self.note_difference(now);
+        }
+    }
+
+    /// Notes the events that the code of a component gets: until it returns, they count as unread.
+    #[inline]
+    pub(crate) fn note_reading(&mut self, index: u32, part: &Part, inboxes: &[Vec<SharedMessage>]) {
+        if self.memory.is_on() {
+            for (subscription, inbox) in part.subscriptions.iter().zip(inboxes).filter(|(_, inbox)| !inbox.is_empty()) {
+                let topic = self.bus.topic_of(subscription);
+                if self.bus.kind(topic) == saoms_api::host::TopicKind::Event {
+                    self.slots[index as usize].memory.reading.push((topic, inbox.clone()));
+                }
+            }
+        }
+    }
+
+    /// Hands over to the store what is kept: with the next cut, where there is one.
+    pub(crate) fn hand_over(&mut self, index: u32, number: u64, changes: Vec<Change>, now: u64) {
+        let Some(queue) = self.memory.queue.clone() else { return };
+        if !self.memory.takes(self.phase) {
+            return queue.put(Batch { index, number, changes, later: None });
+        }
+        self.memory.announced += queue.announce(&changes);
+        self.memory.changes.extend(changes);
+        if self.memory.waiting.last() != Some(&index) {
+            self.memory.waiting.push(index);
+        }
+        self.want_cut(now);
+    }
+
+    /// Leaves something for a network: with a memory, once what it follows from is committed.
+    pub(crate) fn leave_for_network(&mut self, network: u8, from_run: FromRun, now: u64) {
+        if self.memory.takes(self.phase) {
+            self.memory.outgoing.push((network, from_run));
+            self.want_cut(now);
+        } else {
+            self.networks.waiting.push((network, from_run));
+        }
+    }
+
+    /// Notes that an event of another program was received: the first start of that program, and its number.
+    pub(in crate::schedule) fn note_received(
+        &mut self,
+        network: usize,
+        topic: TopicId,
+        (origin, number): (u64, u64),
+        now: u64,
+    ) {
+        if self.memory.takes(self.phase) {
+            let url = self.networks.url(u8::try_from(network).unwrap_or(u8::MAX));
+            let key = (url, Arc::clone(self.bus.name(topic)), origin);
+            self.memory.received.insert(key.clone(), number + 1);
+            self.memory.newly_received.insert(key);
+            self.note_difference(now);
+        }
+    }
+
+    /// A cut is committed: what waited for it leaves.
+    #[cold]
+    pub(super) fn commit_cut(&mut self, cut: u64, now: u64) {
+        self.memory.committed = cut;
+        while let Some(written) = self.memory.writing.pop_front_if(|first| first.cut <= cut) {
+            for index in written.components {
+                self.commit(index, written.batch, now);
+            }
+            self.networks.waiting.extend(written.outgoing);
+        }
+        self.memory.schedule();
+        self.has_returned |= self.awaited > 0;
+        self.wake |= self.roles.asleep_until != 0;
+    }
+
+    /// Nothing is committed any more. Gives the number of messages that do not leave.
+    pub(super) fn fail_memory(&mut self) -> u64 {
+        let written = self.memory.writing.iter().map(|one| one.outgoing.len()).sum::<usize>();
+        let unsent = self.memory.outgoing.len() + written;
+        self.memory = Memory { committed: self.memory.committed, made: self.memory.made, ..Memory::new() };
+        self.has_returned |= self.awaited > 0;
+        unsent as u64
+    }
+
+    /// Lets the memory end with the present moment: what components do in their shutdown is no part of it.
+    pub(super) fn end_memory(&mut self) {
+        if self.memory.is_on() && self.memory.ending == Ending::Running {
+            self.memory.ending = Ending::Due;
+            self.memory.due_at_last = NEVER;
+            self.memory.last_inputs = Some(self.waiting_inputs());
+        }
+    }
+
+    /// Notes a value that an operator has set.
+    pub(in crate::schedule) fn note_set(&mut self, index: u32, set: SetForm, now: u64) {
+        let known = &mut self.slots[index as usize].memory.set;
+        match known.iter_mut().find(|known| known.property == set.property) {
+            Some(known) => known.value = set.value,
+            None => known.push(set),
+        }
+        self.note_differs(index, now);
+    }
+
+    /// True if a component is to run again after a start with this memory.
+    fn is_to_run(&self, index: u32) -> bool {
+        let slot = &self.slots[index as usize];
+        slot.is_scheduled() && slot.state != SlotState::Removed
+    }
+}

@@ -1,0 +1,143 @@
+//! Kills at random moments under load: what was accepted is there after each, once.
+//!
+//! The test is the recorder outside of the program: it notes what was answered "accepted", and compares that with what
+//! the fleet knows after each restart. `SAOMS_KILLS=1000` makes it a long one.
+
+use std::fs;
+use std::io::{self, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::state::crossing;
+use crate::support::{command, empty_folder, saoms_in, text};
+
+/// Number of kills, unless `SAOMS_KILLS` says another one.
+const KILLS: u64 = 12;
+/// Most pieces that are open at once, so that the robots keep up.
+const MOST_OPEN: u64 = 12;
+/// Time within which a program answers that starts.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Sends a request over a socket; gives the body of the answer, if one came as a whole.
+fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<Value> {
+    let mut stream = UnixStream::connect(socket)?;
+    stream.set_read_timeout(Some(PATIENCE))?;
+    let length = body.len();
+    let head = format!("{method} {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: {length}");
+    stream.write_all(format!("{head}\r\n\r\n{body}").as_bytes())?;
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer)?;
+    let (head, body) = answer.split_once("\r\n\r\n").ok_or(io::ErrorKind::UnexpectedEof)?;
+    if !head.starts_with("HTTP/1.1 200") {
+        return Err(io::Error::other(answer));
+    }
+    Ok(serde_json::from_str(body)?)
+}
+
+/// What the world knows of luggage: all pieces, and those that are open.
+fn pieces(socket: &Path) -> io::Result<(u64, u64)> {
+    let status = ask(socket, "GET", "/v1/status", "")?;
+    let components = status["status"]["components"].as_array().cloned().unwrap_or_default();
+    let world = components.iter().find(|one| one["name"] == "World").cloned().unwrap_or_default();
+    let count = |name: &str| world["values"][name].as_u64().ok_or(io::Error::other("no values yet"));
+    assert_eq!((count("collisions")?, count("given_up")?), (0, 0));
+    Ok((count("delivered")? + count("open")?, count("open")?))
+}
+
+/// Numbers that look like chance.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % end
+    }
+}
+
+fn start(folder: &Path) -> Child {
+    let _ = fs::remove_file(folder.join("socket"));
+    let mut run = command(&["run", "f.composite", "--state", "state", "--stay", "--control", "socket"]);
+    run.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+/// Waits until the world knows of this number of pieces at least, and no more come; gives them and those that are open.
+fn wait_for_pieces(program: &mut Child, socket: &Path, least: u64) -> (u64, u64) {
+    let until = Instant::now() + PATIENCE;
+    let mut last = None;
+    loop {
+        assert_eq!(program.try_wait().unwrap(), None, "it runs");
+        assert!(Instant::now() < until, "the world knows of {last:?} pieces, and {least} were accepted");
+        let now = pieces(socket).ok().filter(|(all, _)| *all >= least);
+        if let Some((all, open)) = now
+            && last == Some(all)
+        {
+            return (all, open);
+        }
+        last = now.map(|(all, _)| all);
+        // Answers are 100 ms old at most.
+        sleep(Duration::from_millis(120));
+    }
+}
+
+#[test]
+fn nothing_that_was_accepted_is_lost_or_done_twice() {
+    let folder = empty_folder("memory-killed");
+    let fleet = crossing().replace("at 0.1s 80 times luggage random to random", "at 0.1s luggage (1,1) to (2,2)");
+    fs::write(folder.join("f.composite"), fleet).unwrap();
+    let kills = std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS);
+    let socket = folder.join("socket");
+    let mut dice = Dice(7);
+    // The pieces that were accepted, and those that were sent without an answer: these may be there.
+    let (mut accepted, mut unanswered) = (1, 0);
+    for kill in 0..kills {
+        let mut program = start(&folder);
+        if dice.below(4) == 0 {
+            // In its start, too.
+            sleep(Duration::from_millis(dice.below(300)));
+        } else {
+            let (all, open) = wait_for_pieces(&mut program, &socket, accepted);
+            assert!(
+                all <= accepted + unanswered,
+                "kill {kill}: {all} pieces, {accepted} accepted, {unanswered} more sent"
+            );
+            (accepted, unanswered) = (all, 0);
+            let until = Instant::now() + Duration::from_millis(dice.below(400));
+            for _ in open..MOST_OPEN {
+                if Instant::now() >= until {
+                    break;
+                }
+                let [x, y, to] = [dice.below(6), dice.below(6), dice.below(5)];
+                let line = format!("luggage ({x},{y}) to ({},{y})", (x + 1 + to) % 6);
+                let answer = ask(&socket, "POST", "/v1/events", &line).unwrap();
+                assert_eq!(answer["events"], 1);
+                accepted += 1;
+            }
+            sleep(until.saturating_duration_since(Instant::now()));
+            // One that has no answer before the kill.
+            let mut stream = UnixStream::connect(&socket).unwrap();
+            let line = "luggage (0,1) to (5,4)";
+            let head = format!("POST /v1/events HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}", line.len());
+            stream.write_all(format!("{head}\r\n\r\n{line}").as_bytes()).unwrap();
+            unanswered += 1;
+            sleep(Duration::from_micros(dice.below(15_000)));
+        }
+        program.kill().unwrap();
+        program.wait().unwrap();
+    }
+    let output = saoms_in(&folder, &["run", "f.composite", "--state", "state", "--invariants", "--control", "none"]);
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let done = told.lines().find(|line| line.contains("pieces of luggage delivered")).unwrap();
+    let number = |text: &str| -> u64 { text.rsplit(' ').next().unwrap().parse().unwrap() };
+    let (delivered, rest) = done.split_once(" of ").unwrap();
+    let all: u64 = rest.split(' ').next().unwrap().parse().unwrap();
+    assert_eq!(number(delivered), all, "{told}");
+    assert!((accepted..=accepted + unanswered).contains(&all), "{accepted} accepted, {unanswered} more sent: {told}");
+    assert!(done.contains("no collision"), "{told}");
+    assert!(!told.contains("begins anew"), "{told}");
+}
