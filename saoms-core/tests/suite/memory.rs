@@ -1,5 +1,7 @@
 //! A fleet with a state folder goes on where it was, after a usual end and after a kill at any moment.
 
+mod apart;
+
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -207,6 +209,7 @@ fn fleet_of(text: &str) -> Assembly {
         Registration::of::<Teller>(),
         Registration::of::<Hearer>(),
         Registration::of::<Book>(),
+        Registration::of::<apart::Clerk>(),
     ] {
         registry.add(class).unwrap();
     }

@@ -59,18 +59,35 @@ impl Dice {
     }
 }
 
-fn start(folder: &Path) -> Child {
+/// A program that does not outlive the test.
+struct Program(Child);
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Starts the program. What it goes on from, and what it told, stay in the folder, for a look after a failure.
+fn start(folder: &Path) -> Program {
     let _ = fs::remove_file(folder.join("socket"));
+    let (state, before) = (folder.join("state"), folder.join("before"));
+    fs::create_dir_all(&before).unwrap();
+    if state.join("store.log").exists() {
+        fs::copy(state.join("store.log"), before.join("store.log")).unwrap();
+    }
+    let told = fs::File::create(folder.join("told")).unwrap();
     let mut run = command(&["run", "f.composite", "--state", "state", "--stay", "--control", "socket"]);
-    run.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    Program(run.current_dir(folder).stdout(told.try_clone().unwrap()).stderr(told).spawn().unwrap())
 }
 
 /// Waits until the world knows of this number of pieces at least, and no more come; gives them and those that are open.
-fn wait_for_pieces(program: &mut Child, socket: &Path, least: u64) -> (u64, u64) {
+fn wait_for_pieces(program: &mut Program, socket: &Path, least: u64) -> (u64, u64) {
     let until = Instant::now() + PATIENCE;
     let mut last = None;
     loop {
-        assert_eq!(program.try_wait().unwrap(), None, "it runs");
+        assert_eq!(program.0.try_wait().unwrap(), None, "it runs");
         assert!(Instant::now() < until, "the world knows of {last:?} pieces, and {least} were accepted");
         let now = pieces(socket).ok().filter(|(all, _)| *all >= least);
         if let Some((all, open)) = now
@@ -126,8 +143,7 @@ fn nothing_that_was_accepted_is_lost_or_done_twice() {
             unanswered += 1;
             sleep(Duration::from_micros(dice.below(15_000)));
         }
-        program.kill().unwrap();
-        program.wait().unwrap();
+        drop(program);
     }
     let output = saoms_in(&folder, &["run", "f.composite", "--state", "state", "--invariants", "--control", "none"]);
     let told = text(&output);

@@ -319,14 +319,17 @@ impl Engine {
                     if slot.body.is_none() || slot.held {
                         slot.waiting = true;
                     } else if slot.isolation.active {
-                        slot.queued = true;
+                        if self.holds_back(index) {
+                            continue;
+                        }
+                        self.slots[index as usize].queued = true;
                         self.roles.work.push_back(index);
                         return Next::HandOver;
                     } else if let Some(job) = self.job(index, now) {
                         return Next::Run(index, job);
                     }
                 }
-                RunPhase::Stopping if self.is_last_cut_due() => return self.next_for_last_cut(),
+                RunPhase::Stopping if self.is_last_cut_due() => return self.next_for_last_cut(now),
                 RunPhase::Stopping => match self.next_to_end() {
                     Some(index) => return Next::Run(index, Job::Shutdown),
                     None if self.out == 0 => self.phase = RunPhase::Ended,

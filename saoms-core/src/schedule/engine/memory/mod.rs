@@ -10,6 +10,7 @@
 mod cut;
 mod forms;
 mod recall;
+mod waiting;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -21,20 +22,18 @@ use saoms_api::host::SharedMessage;
 pub(in crate::schedule) use self::forms::{AlertForm, InputForm, InputMessage, InputsForm, SetForm, is_of_memory};
 use self::recall::Recalled;
 pub(in crate::schedule) use self::recall::{Recollection, recall_report, value_hash};
+use self::waiting::CodeInCalls;
 use super::slot::{NEVER, SlotState};
 use super::{Engine, Next, RunPhase};
 use crate::bus::TopicId;
 use crate::network::FromRun;
-use crate::schedule::component::body::{Job, Part};
+use crate::schedule::component::body::Part;
 use crate::store::{Batch, Change, StoreQueue};
 
 /// Time between two cuts on which nothing waits: the most of what simulated components did that is done again.
 const BETWEEN_CUTS: u64 = 500_000_000;
 /// Time after which a cut on which something waits does not wait for a pause of the timer any more.
 const PATIENCE: u64 = 2_000_000;
-
-/// Time for which a cut waits for code that runs on another thread, and has to be in it.
-const CODE_PATIENCE: u64 = 1_000_000_000;
 
 /// In place of the number of a component: a cut.
 pub(in crate::schedule) const CUT: u32 = u32::MAX - 1;
@@ -54,8 +53,8 @@ pub(crate) struct Memory {
     committed: u64,
     /// Number of those who must not see a cut before they have finished.
     guards: usize,
-    /// Time until which a cut waits for code that runs, if it does.
-    waits_until: Option<u64>,
+    /// How the next cut waits for code that runs on other threads.
+    code: CodeInCalls,
     /// Components with events that they were given and have not handled.
     with_inbox: Vec<u32>,
     ending: Ending,
@@ -134,6 +133,9 @@ pub(crate) struct SlotMemory {
     is_touched: bool,
     /// The events that its code has, while it runs.
     reading: Vec<(TopicId, Vec<SharedMessage>)>,
+    /// True if its code has called another component, until it returns; and if cuts have waited for that long enough.
+    has_called: bool,
+    is_given_up: bool,
     /// The values that operators have set, and the alerts that it has raised.
     pub(crate) set: Vec<SetForm>,
     alerts: Vec<AlertForm>,
@@ -155,7 +157,9 @@ impl Memory {
 
     /// True if what an execution does counts for the next cut.
     fn takes(&self, phase: RunPhase) -> bool {
-        self.is_on() && self.ending == Ending::Running && matches!(phase, RunPhase::Running | RunPhase::Starting)
+        let runs = self.ending == Ending::Running && matches!(phase, RunPhase::Running | RunPhase::Starting);
+        // What returns before the last cut is part of that.
+        self.is_on() && (runs || self.ending == Ending::Due)
     }
 
     /// The same, for others.
@@ -167,7 +171,7 @@ impl Memory {
     #[inline]
     pub(super) fn due(&self) -> u64 {
         let due = self.wanted_since.min(self.differs_since.saturating_add(BETWEEN_CUTS));
-        self.waits_until.map_or(due, |until| until.max(due))
+        self.code.blocks_until().max(due)
     }
 
     fn may_cut(&self) -> bool {
@@ -192,7 +196,7 @@ impl Memory {
         self.due_at_last = match self.may_cut() {
             true => {
                 let due = self.differs_since.saturating_add(2 * BETWEEN_CUTS);
-                due.min(self.wanted_since.saturating_add(PATIENCE)).max(self.waits_until.unwrap_or(0))
+                due.min(self.wanted_since.saturating_add(PATIENCE)).max(self.code.blocks_until())
             }
             false => NEVER,
         };
@@ -222,46 +226,6 @@ impl Engine {
     /// True at the end of the run, until its last cut is made.
     pub(super) fn is_last_cut_due(&self) -> bool {
         self.memory.ending == Ending::Due && self.memory.is_on()
-    }
-
-    /// A cut, or what a component has to save before; `None` while another thread runs its code.
-    #[cold]
-    fn cut_or_save(&mut self, now: u64) -> Option<Next> {
-        let is_late = self.memory.waits_until.is_some_and(|until| now >= until);
-        while let Some(index) = self.memory.touched.last().copied() {
-            let slot = &mut self.slots[index as usize];
-            let is_touched = slot.memory.is_touched && !slot.held && slot.is_alive();
-            match slot.body {
-                Some(_) if is_touched => return Some(Next::Run(index, Job::Save)),
-                // What it did since it saved has effects elsewhere. If it hangs, it goes on from what it saved.
-                None if is_touched && !is_late => {
-                    self.memory.waits_until = Some(now.saturating_add(CODE_PATIENCE));
-                    self.memory.schedule();
-                    return None;
-                }
-                _ => {
-                    slot.memory.is_touched = false;
-                    self.memory.touched.pop();
-                }
-            }
-        }
-        self.memory.waits_until = None;
-        Some(Next::Cut)
-    }
-
-    /// The last cut of a run that ends, or what a component has to save before: code that runs is not waited for.
-    pub(super) fn next_for_last_cut(&mut self) -> Next {
-        self.memory.waits_until = Some(0);
-        self.cut_or_save(NEVER).unwrap_or(Next::Cut)
-    }
-
-    /// Looks again whether a cut can be made, since some code has returned.
-    #[inline]
-    pub(super) fn retry_cut(&mut self) {
-        if self.memory.waits_until.take().is_some() {
-            self.memory.schedule();
-            self.wake |= self.roles.asleep_until != 0;
-        }
     }
 
     /// Notes that a component may have events that it was given and has not handled.
@@ -309,7 +273,6 @@ impl Engine {
     /// Takes over what a component saved, whose code has returned.
     #[inline]
     pub(crate) fn note_saved(&mut self, part: &Part, for_cut: bool, now: u64) {
-        // What a component does at the end of the run, before the last cut is made, is no part of that.
         if self.memory.takes(self.phase) || for_cut && self.memory.is_on() {
             self.take_saved(part, now);
         }
@@ -418,6 +381,7 @@ impl Engine {
     pub(super) fn fail_memory(&mut self) -> u64 {
         let written = self.memory.writing.iter().map(|one| one.outgoing.len()).sum::<usize>();
         let unsent = self.memory.outgoing.len() + written;
+        self.release_held_back(0);
         self.memory = Memory { committed: self.memory.committed, made: self.memory.made, ..Memory::new() };
         self.has_returned |= self.awaited > 0;
         unsent as u64

@@ -1,0 +1,126 @@
+//! Code that a cut waits for: what other components know of an execution that is not over.
+//!
+//! An execution on another thread counts as not begun. Once it has called another component, that one knows of it, so
+//! that both would not go back to the same moment: such an execution has to return before the cut.
+
+use super::super::{Engine, NEVER, Next, RunPhase};
+use crate::schedule::component::body::Job;
+
+/// Time for which a cut waits for code that runs on another thread, and has to be in it.
+const PATIENCE: u64 = 1_000_000_000;
+
+/// How the next cut waits for code.
+#[derive(Debug, Default)]
+pub(super) struct CodeInCalls {
+    /// The time until which it waits at most, if it waits.
+    until: Option<u64>,
+    /// True until some code returns.
+    is_blocked: bool,
+    /// Components whose code has called another one, and may not have returned.
+    callers: Vec<u32>,
+    /// Components that were not handed over to another thread meanwhile, so that the wait ends.
+    held_back: Vec<u32>,
+}
+
+impl CodeInCalls {
+    /// The time until which there is no use in trying.
+    pub(super) fn blocks_until(&self) -> u64 {
+        self.until.filter(|_| self.is_blocked).unwrap_or(0)
+    }
+}
+
+impl Engine {
+    /// Notes that the code of a component calls another one.
+    #[inline]
+    pub(crate) fn note_caller(&mut self, index: u32) {
+        if self.memory.is_on() && !std::mem::replace(&mut self.slots[index as usize].memory.has_called, true) {
+            self.memory.code.callers.push(index);
+        }
+    }
+
+    /// Notes that the code of a component begins.
+    #[inline]
+    pub(crate) fn note_code(&mut self, index: u32) {
+        let memory = &mut self.slots[index as usize].memory;
+        (memory.has_called, memory.is_given_up) = (false, false);
+    }
+
+    /// A cut, or what a component has to save before; `None` while it waits for code on another thread.
+    #[cold]
+    pub(super) fn cut_or_save(&mut self, now: u64) -> Option<Next> {
+        let is_late = self.memory.code.until.is_some_and(|until| now >= until);
+        while let Some(index) = self.memory.touched.last().copied() {
+            let slot = &mut self.slots[index as usize];
+            let is_touched = slot.memory.is_touched && !slot.held && slot.is_alive();
+            match slot.body {
+                Some(_) if is_touched => return Some(Next::Run(index, Job::Save)),
+                // What it did since it saved has effects elsewhere. If it hangs, it goes on from what it saved.
+                None if is_touched && !is_late => return self.wait_for_code(now),
+                _ => {
+                    slot.memory.is_touched = false;
+                    self.memory.touched.pop();
+                }
+            }
+        }
+        while let Some(index) = self.memory.code.callers.last().copied() {
+            let slot = &mut self.slots[index as usize];
+            let is_out = slot.body.is_none() && slot.memory.has_called && slot.is_alive();
+            if is_out && !slot.memory.is_given_up {
+                if !is_late {
+                    return self.wait_for_code(now);
+                }
+                // It goes on as after a failure, and no further cut waits for it.
+                slot.memory.is_given_up = true;
+            }
+            self.memory.code.callers.pop();
+        }
+        self.memory.code.until = None;
+        self.release_held_back(now);
+        Some(Next::Cut)
+    }
+
+    #[cold]
+    fn wait_for_code(&mut self, now: u64) -> Option<Next> {
+        self.memory.code.until.get_or_insert(now.saturating_add(PATIENCE));
+        self.memory.code.is_blocked = true;
+        self.memory.schedule();
+        None
+    }
+
+    /// The last cut of a run that ends, or what a component has to save before.
+    pub(in super::super) fn next_for_last_cut(&mut self, now: u64) -> Next {
+        self.cut_or_save(now).unwrap_or_else(|| Next::Wait(self.memory.code.until.unwrap_or(NEVER)))
+    }
+
+    /// Looks again whether a cut can be made, since some code has returned.
+    #[inline]
+    pub(in super::super) fn retry_cut(&mut self) {
+        if std::mem::take(&mut self.memory.code.is_blocked) {
+            self.memory.schedule();
+            self.wake |= self.roles.asleep_until != 0;
+        }
+    }
+
+    /// True if a component is not handed over to another thread now, since a cut waits, and it may call others.
+    #[inline]
+    pub(in super::super) fn holds_back(&mut self, index: u32) -> bool {
+        let waits = self.memory.code.until.is_some() && self.phase == RunPhase::Running;
+        let slot = &mut self.slots[index as usize];
+        if !waits || slot.spec.references.iter().all(|wire| wire.targets.is_empty()) {
+            return false;
+        }
+        slot.waiting = true;
+        self.memory.code.held_back.push(index);
+        true
+    }
+
+    /// Lets the components go on that were not handed over.
+    pub(super) fn release_held_back(&mut self, now: u64) {
+        for index in std::mem::take(&mut self.memory.code.held_back) {
+            // At the end of the run all components end anyway.
+            if self.phase == RunPhase::Running && self.slots[index as usize].body.is_some() {
+                self.resume(index, now);
+            }
+        }
+    }
+}

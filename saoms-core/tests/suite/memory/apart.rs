@@ -1,0 +1,106 @@
+//! Executions on other threads: who called another component, and that one, go back to the same moment.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread::sleep;
+use std::time::Duration;
+
+use saoms_api::{Class, Component, Context, Failure, Saved};
+
+use super::{Count, behind, run};
+use crate::actor::EchoReference;
+use crate::fleet::real;
+
+/// Number of executions of the clerk that have called, and of those that are over.
+static CALLED: AtomicU64 = AtomicU64::new(0);
+static RETURNED: AtomicU64 = AtomicU64::new(0);
+
+/// Asks a book in each execution, and does something else for long, on a thread of its own.
+#[derive(Class)]
+#[class(name = "clerk", periodic, saves, apart)]
+pub(super) struct Clerk {
+    /// For how long, in milliseconds.
+    #[property(default = 0)]
+    takes: u64,
+    #[reference("peer")]
+    book: Option<EchoReference>,
+    asked: u64,
+}
+
+impl Component for Clerk {
+    type Properties = saoms_api::Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let Some(book) = &self.book else { return Ok(()) };
+        let counted = book.echo(context, String::new())?;
+        self.asked += 1;
+        if counted != self.asked.to_string() {
+            return Err(Failure::new(format!("gap: it asked {} times, and the book has {counted}", self.asked)));
+        }
+        if context.execution() == 0 {
+            context.info(format!("has asked {counted}"));
+        }
+        CALLED.fetch_add(1, Ordering::SeqCst);
+        sleep(Duration::from_millis(self.takes));
+        RETURNED.fetch_add(1, Ordering::SeqCst);
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::of(&Count { count: self.asked }))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.asked = saved.read::<Count>()?.unwrap_or_default().count;
+        Ok(())
+    }
+}
+
+/// What a crash at this moment would leave.
+fn copy(folder: &Path) -> tempfile::TempDir {
+    let copy = tempfile::tempdir().unwrap();
+    std::fs::copy(folder.join("store.log"), copy.path().join("store.log")).unwrap();
+    copy
+}
+
+fn wait_for_call(calls: u64) {
+    while CALLED.load(Ordering::SeqCst) < calls {
+        sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn who_called_and_who_was_called_go_back_to_the_same_moment() {
+    let folder = tempfile::tempdir().unwrap();
+    let fleet = "C clerk period=5 takes=60 peer=B\nB book\nT teller period=2";
+    let mut crashes = Vec::new();
+    run(fleet, real(20_000), folder.path(), |handle| {
+        for calls in 1..5 {
+            wait_for_call(calls);
+            handle.commit(Duration::from_secs(10)).unwrap();
+            crashes.push(copy(folder.path()));
+        }
+        // A usual end during the code.
+        let called = CALLED.load(Ordering::SeqCst);
+        wait_for_call(called + 1);
+        handle.stop();
+    });
+    crashes.push(folder);
+    for (place, crash) in crashes.iter().enumerate() {
+        let (report, told) = run(fleet, real(100), crash.path(), |_| {});
+        assert!(!told.contains("gap"), "{place}: {told}");
+        assert!(told.contains("goes on from its state"), "{place}: {told}");
+        assert!(!behind(&told, "C: has asked ").is_empty(), "{told}");
+        assert_eq!(report.outcome.reasons, Vec::<String>::new());
+    }    // Code that does not return is waited for once.
+    let folder = tempfile::tempdir().unwrap();
+    let fleet = fleet.replace("takes=60", "takes=4000");
+    CALLED.store(0, Ordering::SeqCst);
+    RETURNED.store(0, Ordering::SeqCst);
+    run(&fleet, real(20_000), folder.path(), |handle| {
+        wait_for_call(1);
+        (0..20).for_each(|_| handle.commit(Duration::from_secs(10)).unwrap());
+        assert_eq!(RETURNED.load(Ordering::SeqCst), 0, "nobody waits for it for long");
+        handle.stop();
+    });
+}
