@@ -84,7 +84,7 @@ pub trait Field: Sized + 'static {
 }
 
 macro_rules! numbers {
-    ($($type:ty => $name:literal, $value:literal, $as_value:expr, $of_value:pat => $found:expr);* $(;)?) => {
+    ($($type:ty => $name:literal, $value:literal, $as_value:expr, $of_value:pat => $found:expr, $all:expr);* $(;)?) => {
         $(impl Field for $type {
             const TYPE: ConstText = ConstText::Plain(concat!("\"", $name, "\""));
             const LEAST_SIZE: usize = size_of::<$type>();
@@ -115,7 +115,8 @@ macro_rules! numbers {
             }
 
             fn write_all(values: &[Self], writer: &mut Writer) {
-                writer.scalars(values, <$type>::to_le_bytes);
+                let write_all: fn(&[Self], &mut Writer) = $all;
+                write_all(values, writer);
             }
 
             fn read_all(count: usize, reader: &mut Reader<'_>) -> Result<Vec<Self>, DecodeError> {
@@ -130,23 +131,31 @@ macro_rules! numbers {
 }
 
 macro_rules! integers {
-    ($($type:ty => $name:literal),* $(,)?) => {
+    ($($type:ty => $name:literal, $all:expr);* $(;)?) => {
         numbers! { $(
             // One that is too large for a single value is none.
             $type => $name, "integer", |number| i64::try_from(number).ok().map(Value::Integer),
-                Value::Integer(number) => number.try_into().ok();
+                Value::Integer(number) => number.try_into().ok(), $all;
         )* }
     };
 }
 
 integers! {
-    i8 => "int8", i16 => "int16", i32 => "int32", i64 => "int64",
-    u8 => "uint8", u16 => "uint16", u32 => "uint32", u64 => "uint64",
+    i8 => "int8", |values, writer| writer.scalars(values, i8::to_le_bytes);
+    i16 => "int16", |values, writer| writer.scalars(values, i16::to_le_bytes);
+    i32 => "int32", |values, writer| writer.scalars(values, i32::to_le_bytes);
+    i64 => "int64", |values, writer| writer.scalars(values, i64::to_le_bytes);
+    u8 => "uint8", |values, writer| writer.octets(values);
+    u16 => "uint16", |values, writer| writer.scalars(values, u16::to_le_bytes);
+    u32 => "uint32", |values, writer| writer.scalars(values, u32::to_le_bytes);
+    u64 => "uint64", |values, writer| writer.scalars(values, u64::to_le_bytes);
 }
 
 numbers! {
-    f32 => "float32", "number", |number| Some(Value::Number(number.into())), Value::Number(number) => Some(number as f32);
-    f64 => "float64", "number", |number| Some(Value::Number(number)), Value::Number(number) => Some(number);
+    f32 => "float32", "number", |number| Some(Value::Number(number.into())), Value::Number(number) => Some(number as f32),
+        |values, writer| writer.scalars(values, f32::to_le_bytes);
+    f64 => "float64", "number", |number| Some(Value::Number(number)), Value::Number(number) => Some(number),
+        |values, writer| writer.scalars(values, f64::to_le_bytes);
 }
 
 impl Field for bool {

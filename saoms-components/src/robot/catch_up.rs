@@ -2,8 +2,8 @@
 //!
 //! What the execution that failed told the hardware is not in the state that the robot goes on from: an action may be
 //! over, and another one begun. Of the latter it is known which it can be: a move to the block that the robot had
-//! announced, or the work of the gripper where it is. Until it knows, the robot is silent, so that what it had
-//! announced counts for the others.
+//! announced, or that a zone had granted, or the work of the gripper where it is. Until it knows, the robot is silent,
+//! so that what it had announced counts for the others.
 
 use saoms_api::{Cause, Context, Failure};
 
@@ -28,6 +28,9 @@ impl RobotKnowledge {
         if !self.routes.knows_area() {
             let Reply::Answer(map) = self.hardware.area(context)? else { return Ok(false) };
             self.routes.learn_again(map, self.charge_block, &self.lists.charging_places);
+        }
+        if let Some(zones) = &mut self.zones {
+            zones.hear_grants(context, self.routes.map());
         }
         let Some(progress) = self.progress_meanwhile(context)? else { return Ok(false) };
         let running = self.hardware.running();
@@ -116,14 +119,19 @@ impl RobotKnowledge {
     /// True if an execution that found this action done may have begun another one.
     fn may_have_begun_after(&self, action: Action) -> bool {
         let is_move = action.kind == ActionKind::Move && self.policy == Policy::Safe;
-        is_move && (self.traffic.wanted(action.block).is_some() || self.uses_gripper_at(action.block))
+        let announced = match &self.zones {
+            Some(zones) => zones.next_after(action.block),
+            None => self.traffic.wanted(action.block),
+        };
+        is_move && (announced.is_some() || self.uses_gripper_at(action.block))
     }
 
     /// The only action that an execution can have begun; `None` if there are several.
     fn only_action(&self) -> Option<Action> {
-        let announced = match self.policy {
-            Policy::Safe => self.traffic.wanted(self.next),
-            Policy::Classic => Some(self.next).filter(|next| *next != self.block),
+        let announced = match (self.policy, &self.zones) {
+            (Policy::Safe, Some(zones)) => zones.next_after(self.block),
+            (Policy::Safe, None) => self.traffic.wanted(self.next),
+            (Policy::Classic, _) => Some(self.next).filter(|next| *next != self.block),
         };
         match announced {
             Some(_) if self.uses_gripper_at(self.block) => None,

@@ -112,6 +112,12 @@ impl Passage {
         self.held.get(1).map(|held| held.step.block)
     }
 
+    /// The block after another one of the passage.
+    pub(crate) fn next_after(&self, block: Block) -> Option<Block> {
+        let place = self.held.iter().position(|held| held.step.block == block)?;
+        self.held.get(place + 1).map(|held| held.step.block)
+    }
+
     /// The last block that the robot holds.
     pub(crate) fn end(&self) -> Block {
         self.held.last().map_or(Block::default(), |held| held.step.block)

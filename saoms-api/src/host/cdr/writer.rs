@@ -50,6 +50,11 @@ impl Writer {
         }
     }
 
+    /// Writes bytes side by side.
+    pub fn octets(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
     /// Writes the length of a string or sequence.
     ///
     /// # Panics

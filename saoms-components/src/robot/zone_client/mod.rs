@@ -259,21 +259,7 @@ impl ZoneClient {
     /// Takes in what zones say. True if there are grants for an earlier goal among them, whose blocks may lead
     /// elsewhere.
     pub(crate) fn hear(&mut self, context: &mut Context<'_>, area: Option<&Map>) -> bool {
-        let ZoneClient {
-            passage: Some(passage),
-            territories,
-            grants,
-            validator,
-            in_the_way,
-            asides,
-            latency,
-            aimed,
-            rested,
-            is_asked,
-            unheard,
-            ..
-        } = self
-        else {
+        let ZoneClient { passage: Some(passage), territories, validator, asides, latency, is_asked, .. } = self else {
             return false;
         };
         latency.begin_execution();
@@ -282,7 +268,6 @@ impl ZoneClient {
             aside.age += 1;
             aside.age <= lasts
         });
-        let mut is_late = false;
         for (header, territory) in context.receive(territories).with_headers() {
             if validator.accepts(territory, header, area, context) {
                 passage.hear_territory(territory);
@@ -290,6 +275,28 @@ impl ZoneClient {
                 validator.expect_introductions();
             }
         }
+        self.hear_grants(context, area)
+    }
+
+    /// Takes in grants alone. A robot that goes on after a failure may have begun to use those which it heard then, so
+    /// that it has to know of them before it hears that their zone has begun a new term.
+    pub(crate) fn hear_grants(&mut self, context: &mut Context<'_>, area: Option<&Map>) -> bool {
+        let ZoneClient {
+            passage: Some(passage),
+            grants,
+            validator,
+            in_the_way,
+            asides,
+            latency,
+            aimed,
+            rested,
+            unheard,
+            ..
+        } = self
+        else {
+            return false;
+        };
+        let mut is_late = false;
         for (header, grant) in context.receive(grants).with_headers() {
             if grant.robot == passage.robot() && validator.accepts(grant, header, area, context) && passage.hear(grant)
             {
@@ -325,6 +332,11 @@ impl ZoneClient {
     /// The block that the robot may enter next.
     pub(crate) fn next(&self) -> Option<Block> {
         self.passage.as_ref()?.next()
+    }
+
+    /// The block that it may enter once it is at another one.
+    pub(crate) fn next_after(&self, block: Block) -> Option<Block> {
+        self.passage.as_ref()?.next_after(block)
     }
 
     /// The robot that is in the way, if the robot can drive no further.
