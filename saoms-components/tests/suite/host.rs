@@ -1,5 +1,7 @@
 //! A host that runs components in virtual time, and can delay their messages.
 
+mod restart;
+
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::fmt;
@@ -10,7 +12,9 @@ use saoms_api::host::{
     DynComponent, Invocation, LoopRegistration, NamedLoops, Phase, PropertyValue, Registration, ServiceCall,
     SharedMessage, SmolStr, TopicDeclaration, TopicKind,
 };
-use saoms_api::{CallError, Cause, Chance, Class, Context, Failure, Level, Record, ReportValue, Time, Work};
+use saoms_api::{
+    CallError, Cause, Chance, Class, Context, Failure, KnownPublisher, Level, Record, ReportValue, Time, Work,
+};
 
 /// A fleet in virtual time.
 pub(crate) struct Fleet {
@@ -24,6 +28,8 @@ pub(crate) struct Fleet {
     /// Maximum delay of a component's messages, as a share of its period.
     lateness: f64,
     chance: Chance,
+    /// An execution, by its component and its number, that a crash of the program takes back.
+    pub(crate) crash: Option<(usize, u64)>,
     pub(crate) counts: BTreeMap<String, i64>,
     pub(crate) log: Vec<String>,
     pub(crate) console: Vec<String>,
@@ -58,6 +64,11 @@ struct Seat {
     /// Messages that the component has sent and that did not arrive yet, in order.
     travelling: Vec<(u32, SharedMessage)>,
     vote: Option<Work>,
+    make: Box<dyn Fn() -> Box<dyn DynComponent>>,
+    kept: BTreeMap<u64, Vec<u8>>,
+    /// True after a crash, for what kept something, and while one initializes that goes on from a saved state.
+    kept_before: bool,
+    goes_on: bool,
 }
 
 impl Fleet {
@@ -72,6 +83,7 @@ impl Fleet {
             seed,
             lateness,
             chance: Chance::for_component(seed, "host"),
+            crash: None,
             counts: BTreeMap::new(),
             log: Vec::new(),
             console: Vec::new(),
@@ -109,6 +121,10 @@ impl Fleet {
             outbox: Vec::new(),
             travelling: Vec::new(),
             vote: None,
+            make: Box::new(move || Registration::of::<C>().construct(&values).unwrap()),
+            kept: BTreeMap::new(),
+            kept_before: false,
+            goes_on: false,
             loops: registration.loops(),
             is_classic,
         });
@@ -166,6 +182,10 @@ impl Fleet {
     fn execute(&mut self, index: usize) {
         let late = std::mem::take(&mut self.seats[index].travelling);
         self.deliver(index, late);
+        if self.crash.take_if(|crash| *crash == (index, self.seats[index].execution)).is_some() {
+            self.schedule(self.now + self.seats[index].period, Due::Execution(index));
+            return self.crash_in(index);
+        }
         self.call(index, |component, context| component.execute(context))
             .unwrap_or_else(|failure| panic!("{} failed: {failure}", self.seats[index].name));
         let seat = &mut self.seats[index];
@@ -332,12 +352,34 @@ impl Host for View<'_> {
         &[]
     }
 
-    fn keep(&mut self, _: u64, _: &[u8]) -> Result<(), Failure> {
+    fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
+        match bytes {
+            [] => self.seat_mut().kept.remove(&key),
+            bytes => self.seat_mut().kept.insert(key, bytes.to_vec()),
+        };
         Ok(())
     }
 
     fn kept(&self) -> BTreeMap<u64, &[u8]> {
-        BTreeMap::new()
+        self.seat().kept.iter().map(|(key, bytes)| (*key, &**bytes)).collect()
+    }
+
+    fn kept_by_earlier_program(&self) -> bool {
+        self.seat().kept_before
+    }
+
+    fn goes_on(&self) -> bool {
+        self.seat().goes_on
+    }
+
+    fn goes_on_from_earlier_program(&self) -> bool {
+        self.seat().goes_on
+    }
+
+    fn publishers(&self, topic: &str) -> Vec<KnownPublisher> {
+        let publishes = |seat: &&Seat| seat.publishes.iter().any(|place| self.fleet.topics[*place].name == topic);
+        let publisher = |sender| KnownPublisher { sender, has_begun: true, number: None };
+        (0..).zip(&self.fleet.seats).filter(|(_, seat)| publishes(seat)).map(|(sender, _)| publisher(sender)).collect()
     }
 
     fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {

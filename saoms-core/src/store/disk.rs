@@ -11,7 +11,7 @@ use super::{StoreError, group};
 
 /// The log.
 pub(super) const LOG: &str = "store.log";
-/// A log that is being written anew.
+/// A log that is being written anew, and the space that is reserved for that.
 const NEW: &str = "store.new";
 /// The file that a program locks while it uses the folder.
 const LOCK: &str = "lock";
@@ -20,6 +20,8 @@ const LOCK: &str = "lock";
 pub(super) struct DiskFile {
     folder: PathBuf,
     file: File,
+    /// The empty file that becomes the log when that is written anew.
+    spare: Option<File>,
     /// Held as long as the log is open.
     _lock: File,
 }
@@ -80,7 +82,7 @@ impl DiskFile {
             };
             begin(&mut file).map_err(failed("be written", &log))?;
         }
-        let file = DiskFile { folder: folder.to_owned(), file, _lock: locked };
+        let file = DiskFile { folder: folder.to_owned(), file, spare: None, _lock: locked };
         Ok(Opened { file, bytes, was_there: !is_new })
     }
 }
@@ -99,6 +101,26 @@ fn make(folder: &Path) -> io::Result<()> {
 /// Waits until the names of a folder's files are on the disk.
 fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
+}
+
+/// The empty file that becomes the log when that is written anew.
+fn new_log(folder: &Path) -> io::Result<File> {
+    let file = OpenOptions::new().create(true).append(true).open(folder.join(NEW))?;
+    if file.metadata()?.len() > 0 {
+        // A program ended while it wrote it.
+        file.set_len(0)?;
+    }
+    Ok(file)
+}
+
+/// Has the disk reserve space for the first bytes of a file.
+fn reserve(file: &File, size: u64) -> io::Result<()> {
+    let size = libc::off_t::try_from(size).map_err(|_| ErrorKind::FileTooLarge)?;
+    // SAFETY: the descriptor is that of an open file; the call touches no memory of this program.
+    match unsafe { libc::fallocate(file.as_raw_fd(), libc::FALLOC_FL_KEEP_SIZE, 0, size) } {
+        0 => Ok(()),
+        _ => Err(io::Error::last_os_error()),
+    }
 }
 
 impl LogFile for DiskFile {
@@ -127,21 +149,26 @@ impl LogFile for DiskFile {
     }
 
     fn reserve(&mut self, size: u64) -> io::Result<()> {
-        let size = libc::off_t::try_from(size).map_err(|_| ErrorKind::FileTooLarge)?;
-        // SAFETY: the descriptor is that of an open file; the call touches no memory of this program.
-        match unsafe { libc::fallocate(self.file.as_raw_fd(), libc::FALLOC_FL_KEEP_SIZE, 0, size) } {
-            0 => Ok(()),
-            _ => Err(io::Error::last_os_error()),
+        reserve(&self.file, size)
+    }
+
+    fn reserve_spare(&mut self, size: u64) -> io::Result<()> {
+        if let Some(spare) = &self.spare {
+            return reserve(spare, size);
         }
+        let spare = new_log(&self.folder)?;
+        reserve(&spare, size)?;
+        self.spare = Some(spare);
+        Ok(())
     }
 
     fn replace(&mut self, bytes: &[u8]) -> Result<(), ReplaceError> {
         let (new, log) = (self.folder.join(NEW), self.folder.join(LOG));
+        let spare = self.spare.take();
         let write = || {
-            let mut file = OpenOptions::new().create(true).truncate(true).write(true).open(&new)?;
+            let mut file = spare.map_or_else(|| new_log(&self.folder), Ok)?;
             file.write_all(bytes)?;
             file.sync_all()?;
-            let file = OpenOptions::new().append(true).open(&new)?;
             // Nobody else uses it yet; a file system without locks has none for the other file, either.
             let _ = file.try_lock();
             Ok(file)

@@ -14,6 +14,8 @@ pub(super) trait LogFile: Send {
     fn cut(&mut self, size: u64) -> io::Result<()>;
     /// Has the disk reserve the space up to so many bytes.
     fn reserve(&mut self, size: u64) -> io::Result<()>;
+    /// Has the disk reserve so many bytes for what is put in place of all.
+    fn reserve_spare(&mut self, size: u64) -> io::Result<()>;
     /// Puts other bytes on the disk, and then in place of all.
     fn replace(&mut self, bytes: &[u8]) -> Result<(), ReplaceError>;
 }
@@ -41,7 +43,8 @@ pub(super) enum CommitError {
 const SMALL: u64 = 1 << 20;
 /// A log is written anew when it is this number of times as large as what it holds.
 const FACTOR: u64 = 4;
-/// Space that is reserved on the disk beyond what is written, so that a disk that becomes full stops nothing at once.
+/// Space that is reserved on the disk beyond what is written, for the log and for the one that is written anew: so a
+/// disk that becomes full stops nothing.
 const RESERVE: u64 = 4 << 20;
 
 /// A log of what components keep.
@@ -56,6 +59,10 @@ pub(super) struct Log<F> {
     compact_at: u64,
     /// Size up to which there is space; `None` where the file system reserves none.
     reserved: Option<u64>,
+    /// The same for a log that is written anew.
+    spare: Option<u64>,
+    /// True if the disk had no space beyond what is reserved when it was asked last.
+    lacks_space: bool,
     /// Why it could not be written anew, until somebody asks.
     complaint: Option<io::Error>,
     buffer: Vec<u8>,
@@ -64,8 +71,18 @@ pub(super) struct Log<F> {
 impl<F: LogFile> Log<F> {
     /// A log that holds this, after a group with this number.
     pub(super) fn new(file: F, size: u64, number: u64, contents: Contents) -> Log<F> {
-        let mut log =
-            Log { file, size, number, contents, compact_at: 0, reserved: Some(0), complaint: None, buffer: Vec::new() };
+        let mut log = Log {
+            file,
+            size,
+            number,
+            contents,
+            compact_at: 0,
+            reserved: Some(0),
+            spare: Some(0),
+            lacks_space: false,
+            complaint: None,
+            buffer: Vec::new(),
+        };
         log.compact_at = log.next_compaction();
         log
     }
@@ -88,8 +105,19 @@ impl<F: LogFile> Log<F> {
         self.file.look()
     }
 
-    /// Reserves space for what comes. False if the disk has none left beyond what is reserved already.
+    /// Reserves space for what comes. False if the disk has none left beyond what is reserved already: then the log is
+    /// written anew in time, so that it goes on in that for as long as what it holds fits.
     pub(super) fn reserve(&mut self) -> bool {
+        let (log, spare) = (self.reserve_log(), self.reserve_spare());
+        self.lacks_space = !(log && spare);
+        if self.lacks_space {
+            let reserved = self.reserved.unwrap_or(0).saturating_sub(RESERVE / 2);
+            self.compact_at = self.compact_at.min(reserved.max(2 * self.contents.size() + SMALL / 16));
+        }
+        !self.lacks_space
+    }
+
+    fn reserve_log(&mut self) -> bool {
         let Some(reserved) = self.reserved else { return true };
         if self.size + RESERVE / 2 <= reserved {
             return true;
@@ -98,6 +126,28 @@ impl<F: LogFile> Log<F> {
             Ok(()) => self.reserved = Some(self.size + RESERVE),
             Err(error) if is_full(&error) => return false,
             Err(_) => self.reserved = None,
+        }
+        true
+    }
+
+    /// A disk that lacked space has some again only if it gives more than what was reserved before.
+    fn reserve_spare(&mut self) -> bool {
+        let Some(spare) = self.spare else { return true };
+        let holds = self.contents.size();
+        let least = holds + if self.lacks_space { 2 * RESERVE } else { RESERVE / 2 };
+        if least <= spare {
+            return true;
+        }
+        let wanted = least.max(holds + RESERVE);
+        match self.file.reserve_spare(wanted) {
+            Ok(()) => self.spare = Some(wanted),
+            Err(error) if is_full(&error) => {
+                if spare < holds + RESERVE / 2 && self.file.reserve_spare(holds + RESERVE).is_ok() {
+                    self.spare = Some(holds + RESERVE);
+                }
+                return false;
+            }
+            Err(_) => self.spare = None,
         }
         true
     }
@@ -144,12 +194,14 @@ impl<F: LogFile> Log<F> {
         match self.file.replace(&bytes) {
             Ok(()) => {
                 (self.size, self.number) = (bytes.len() as u64, number + 1);
-                self.reserved = self.reserved.map(|_| 0);
+                self.reserved = self.reserved.and_then(|_| self.spare.or(Some(0)));
+                self.spare = self.spare.map(|_| 0);
                 self.compact_at = self.next_compaction();
                 Ok(())
             }
             Err(ReplaceError::Before(error)) => {
                 self.compact_at = 2 * self.size;
+                self.spare = self.spare.map(|_| 0);
                 self.complaint = Some(error);
                 Ok(())
             }

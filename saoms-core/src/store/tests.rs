@@ -44,6 +44,8 @@ struct TestDisk {
     synced: usize,
     /// Number of bytes that fit.
     space: Option<usize>,
+    /// Number of bytes that are reserved for the log, and for one in its place.
+    reserved: [usize; 2],
     /// Fails at the next call of this name.
     fails: Option<&'static str>,
     replaced: usize,
@@ -67,7 +69,9 @@ impl TestFile {
 impl LogFile for TestFile {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         let mut disk = self.call("append")?;
-        let space = disk.space.map_or(bytes.len(), |space| space.saturating_sub(disk.bytes.len()));
+        let [reserved, spare] = disk.reserved;
+        let space = disk.space.map_or(usize::MAX, |space| space.saturating_sub(spare).max(reserved));
+        let space = space.saturating_sub(disk.bytes.len());
         disk.bytes.extend_from_slice(&bytes[..space.min(bytes.len())]);
         if space < bytes.len() { Err(ErrorKind::StorageFull.into()) } else { Ok(()) }
     }
@@ -88,13 +92,33 @@ impl LogFile for TestFile {
     }
 
     fn reserve(&mut self, size: u64) -> io::Result<()> {
-        let disk = self.call("reserve")?;
-        if disk.space.is_some_and(|space| size > space as u64) { Err(ErrorKind::StorageFull.into()) } else { Ok(()) }
+        self.call("reserve")?.reserve(0, size as usize)
+    }
+
+    fn reserve_spare(&mut self, size: u64) -> io::Result<()> {
+        self.call("reserve_spare")?.reserve(1, size as usize)
     }
 
     fn replace(&mut self, bytes: &[u8]) -> Result<(), ReplaceError> {
         let mut disk = self.call("replace").map_err(ReplaceError::Before)?;
+        let [_, spare] = disk.reserved;
+        let others = disk.bytes.len().max(disk.reserved[0]);
+        if disk.space.is_some_and(|space| bytes.len() > space.saturating_sub(others).max(spare)) {
+            return Err(ReplaceError::Before(ErrorKind::StorageFull.into()));
+        }
+        disk.reserved = [spare, 0];
         (disk.bytes, disk.synced, disk.replaced) = (bytes.to_vec(), bytes.len(), disk.replaced + 1);
+        Ok(())
+    }
+}
+
+impl TestDisk {
+    fn reserve(&mut self, place: usize, size: usize) -> io::Result<()> {
+        let other = if place == 0 { self.reserved[1] } else { self.reserved[0].max(self.bytes.len()) };
+        if self.space.is_some_and(|space| size > space.saturating_sub(other)) {
+            return Err(ErrorKind::StorageFull.into());
+        }
+        self.reserved[place] = self.reserved[place].max(size);
         Ok(())
     }
 }
@@ -266,6 +290,29 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
     let (told, shown, _) = run(TestDisk { space: Some(50), ..TestDisk::default() }, &kept);
     let full = "is almost full; is full; the state folder cannot be written: no storage space; what is kept from now on would be lost";
     assert_eq!((told.as_str(), shown.as_str()), (full, ""));
+}
+
+#[test]
+fn a_disk_that_is_full_stops_nothing_that_fits_into_what_is_reserved() {
+    let file = TestFile::default();
+    let (queue, told) = (StoreQueue::default(), Told::default());
+    let mut writer = Writer { log: file.clone().log(), queue: &queue, events: &told, told: None };
+    assert!(writer.log.reserve());
+    let [log, spare] = file.0.lock().unwrap().reserved;
+    // From now on others take all that is left, whenever something is free.
+    file.0.lock().unwrap().space = Some(log + spare);
+    let kept = "x".repeat(100_000);
+    for round in 0..500_u64 {
+        let component = format!("A{}", round % 5);
+        let change = Change { component: component.into(), key: 1, bytes: Some(kept.as_bytes().into()) };
+        writer.log.commit(&[change]).unwrap();
+        let has_space = writer.log.reserve();
+        assert!(round < 30 || !has_space, "{round}");
+    }
+    assert!(writer.log.complaint().is_none());
+    // Its own space is not enough for new work; what somebody else frees is.
+    file.0.lock().unwrap().space = Some(64 << 20);
+    assert!(writer.log.reserve());
 }
 
 #[test]

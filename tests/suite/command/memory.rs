@@ -7,7 +7,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -21,10 +21,10 @@ const KILLS: u64 = 12;
 /// Most pieces that are open at once, so that the robots keep up.
 const MOST_OPEN: u64 = 12;
 /// Time within which a program answers that starts.
-const PATIENCE: Duration = Duration::from_secs(30);
+pub(super) const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Sends a request over a socket; gives the body of the answer, if one came as a whole.
-fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<Value> {
+pub(super) fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<Value> {
     let mut stream = UnixStream::connect(socket)?;
     stream.set_read_timeout(Some(PATIENCE))?;
     let length = body.len();
@@ -40,7 +40,7 @@ fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<Value>
 }
 
 /// What the world knows of luggage: all pieces, and those that are open.
-fn pieces(socket: &Path) -> io::Result<(u64, u64)> {
+pub(super) fn pieces(socket: &Path) -> io::Result<(u64, u64)> {
     let status = ask(socket, "GET", "/v1/status", "")?;
     let components = status["status"]["components"].as_array().cloned().unwrap_or_default();
     let world = components.iter().find(|one| one["name"] == "World").cloned().unwrap_or_default();
@@ -60,7 +60,7 @@ impl Dice {
 }
 
 /// A program that does not outlive the test.
-struct Program(Child);
+pub(super) struct Program(pub(super) Child);
 
 impl Drop for Program {
     fn drop(&mut self) {
@@ -83,7 +83,7 @@ fn start(folder: &Path) -> Program {
 }
 
 /// Waits until the world knows of this number of pieces at least, and no more come; gives them and those that are open.
-fn wait_for_pieces(program: &mut Program, socket: &Path, least: u64) -> (u64, u64) {
+pub(super) fn wait_for_pieces(program: &mut Program, socket: &Path, least: u64) -> (u64, u64) {
     let until = Instant::now() + PATIENCE;
     let mut last = None;
     loop {

@@ -9,6 +9,7 @@ mod graph;
 mod history;
 mod log;
 mod memory;
+mod memory_full;
 mod new;
 mod operation;
 mod options;
