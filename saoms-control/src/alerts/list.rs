@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, VecDeque};
 use serde::{Deserialize, Serialize};
 
 use super::Change;
+use super::kept::Noted;
 
 /// Number of alerts that are kept, and of kinds that are counted.
 const KEPT: usize = 1000;
@@ -85,6 +86,10 @@ pub(super) struct List {
     kinds: BTreeMap<String, u64>,
     /// Time of the newest event in seconds.
     pub(super) last_time_s: f64,
+    /// What was acknowledged in an earlier program, and the time at which this one goes on: alerts that are raised again
+    /// then are the same.
+    pub(super) noted: Vec<Noted>,
+    pub(super) goes_on_at_s: f64,
 }
 
 impl List {
@@ -119,11 +124,20 @@ impl List {
         }
         self.raised += 1;
         self.count(&kind);
+        let acknowledged = self.noted(component, &kind, &subject);
         let component = component.map(str::to_owned);
-        let alert =
-            Alert { id: self.raised, kind, component, subject, text, time_s, date, over_s: None, acknowledged: None };
+        let alert = Alert { id: self.raised, kind, component, subject, text, time_s, date, over_s: None, acknowledged };
         self.alerts.push_back(alert.clone());
         Some((alert, Change::Raised))
+    }
+
+    /// The acknowledgement of an alert that an earlier program had raised.
+    fn noted(&mut self, component: Option<&str>, kind: &str, subject: &str) -> Option<Acknowledgement> {
+        if self.last_time_s > self.goes_on_at_s {
+            self.noted.clear();
+        }
+        let place = self.noted.iter().position(|noted| noted.is_about(component, kind, subject))?;
+        Some(self.noted.swap_remove(place).acknowledged())
     }
 
     fn count(&mut self, kind: &str) {

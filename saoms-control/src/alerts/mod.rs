@@ -2,6 +2,7 @@
 
 mod command;
 mod delivery;
+mod kept;
 mod list;
 #[cfg(test)]
 mod tests;
@@ -12,6 +13,7 @@ use std::time::{Duration, SystemTime};
 
 use saoms_api::Level;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
+use saoms_core::schedule::{Handle, SharedText};
 use serde_json::json;
 use tokio::sync::broadcast;
 
@@ -37,11 +39,14 @@ pub struct AlertList {
     list: Mutex<List>,
     targets: Mutex<Targets>,
     new: broadcast::Sender<Arc<str>>,
+    /// What outlives the program.
+    kept: SharedText,
 }
 
 impl Default for AlertList {
     fn default() -> AlertList {
-        AlertList { list: Mutex::default(), targets: Mutex::default(), new: broadcast::Sender::new(WAITING) }
+        let new = broadcast::Sender::new(WAITING);
+        AlertList { list: Mutex::default(), targets: Mutex::default(), new, kept: SharedText::default() }
     }
 }
 
@@ -100,6 +105,16 @@ impl AlertList {
         targets.finish(patience)
     }
 
+    /// Has acknowledgements outlive the program: what an earlier one left counts for the alerts that are raised again at
+    /// the time at which this one goes on.
+    pub fn outlive(&self, handle: &Handle) {
+        let left = handle.share_text("acknowledged alerts", &self.kept);
+        let mut list = self.lock();
+        list.noted = left.map(|left| kept::read(&left)).unwrap_or_default();
+        list.goes_on_at_s = handle.progress().time.as_secs_f64();
+        list.last_time_s = list.goes_on_at_s;
+    }
+
     /// Says that a person is needed for something of this program, not of a component.
     pub fn raise(&self, kind: &str, subject: &str, text: String) {
         let at = self.lock().last_time_s;
@@ -116,14 +131,24 @@ impl AlertList {
         let mut list = self.lock();
         if let Some((alert, change)) = list.raise(time_s, date(SystemTime::now()), subject, text) {
             self.tell(change, &alert);
+            if alert.acknowledged.is_some() {
+                self.keep(&list);
+            }
         }
     }
 
     fn over_at(&self, time_s: f64, is_over: impl Fn(&Alert) -> bool) {
         let mut list = self.lock();
-        for alert in list.over(time_s, is_over) {
-            self.tell(Change::Over, &alert);
+        let over = list.over(time_s, is_over);
+        over.iter().for_each(|alert| self.tell(Change::Over, alert));
+        if over.iter().any(|alert| alert.acknowledged.is_some()) {
+            self.keep(&list);
         }
+    }
+
+    /// Writes down what the next program has to know. Called under the lock of the list.
+    fn keep(&self, list: &List) {
+        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = kept::text(list.all());
     }
 
     /// Tells clients and targets of a change. Called under the lock of the list, so that all get the same order.
@@ -131,8 +156,8 @@ impl AlertList {
         let text: Arc<str> = json!({"event": change.name(), "alert": alert}).to_string().into();
         // Nobody may follow.
         let _ = self.new.send(text);
-        // Another text calls nobody again.
-        if change != Change::Changed {
+        // Another text calls nobody again, nor does what somebody has taken notice of before.
+        if change != Change::Changed && (change != Change::Raised || alert.acknowledged.is_none()) {
             self.targets().put(change, alert);
         }
     }
@@ -147,6 +172,7 @@ impl AlertList {
         for alert in &acknowledged {
             self.tell(Change::Acknowledged, alert);
         }
+        self.keep(&list);
         Ok(acknowledged.iter().map(|alert| alert.id).collect())
     }
 

@@ -16,7 +16,7 @@ use tokio::sync::broadcast::error::RecvError;
 
 use super::answer::{Answer, Refusal, json_text};
 use super::fleet::ControlledFleet;
-use super::orders::word;
+use super::orders::{self, word};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -71,6 +71,7 @@ pub(super) async fn acknowledge(State(fleet): Fleet, Query(query): Query<ByQuery
     let unknown = |id| Refusal::unprocessable(format!("there is no alert {id}"));
     let acknowledged = fleet.alerts.acknowledge(&ids, &by).map_err(unknown)?;
     if !acknowledged.is_empty() {
+        orders::commit(Arc::clone(&fleet)).await?;
         let numbers = acknowledged.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
         fleet.handle.note(Level::Info, format!("alerts acknowledged by {by}: {numbers}"));
     }

@@ -16,6 +16,7 @@ use super::change::{self, ChangeError, Changed, StartError, Takeover};
 use super::drive::store_writer;
 use super::engine::RunPhase;
 use super::engine::lifecycle::Request;
+use super::engine::memory::SharedText;
 use super::engine::slot::NEVER;
 use super::hold::{self, HoldError, Speed};
 use super::inject::{self, InjectError, Injection};
@@ -290,6 +291,14 @@ impl Handle {
             counter.store(u32::try_from(before).unwrap_or(u32::MAX), Ordering::Relaxed);
         }
         self.shared.release(engine);
+    }
+
+    /// Has a text that others change outlive the program, under a name; gives what an earlier program left.
+    pub fn share_text(&self, name: &str, text: &SharedText) -> Option<String> {
+        let mut engine = self.shared.lock();
+        let before = engine.share_text(name, Arc::clone(text));
+        self.shared.release(engine);
+        before
     }
 
     /// Adds to a count of the report.

@@ -32,6 +32,7 @@ mod topics;
 mod why;
 
 pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
+pub use engine::memory::SharedText;
 pub use fleet::RunningFleet;
 pub use handle::{Handle, Hold, NotCommitted, Together};
 pub use hold::{HoldError, Speed};

@@ -347,6 +347,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let before = |handle: &Handle| {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
         numbers.outlive(handle);
+        alerts.outlive(handle);
         watch.iter().filter(|_| handle.recalled().is_some()).for_each(|watch| watch.goes_on());
         // One that goes on from where its work was done would end before it hears of more.
         until_events = Some(handle.hold());

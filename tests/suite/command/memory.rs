@@ -157,3 +157,39 @@ fn nothing_that_was_accepted_is_lost_or_done_twice() {
     assert!(done.contains("no collision"), "{told}");
     assert!(!told.contains("begins anew"), "{told}");
 }
+
+#[test]
+fn what_was_acknowledged_calls_nobody_again() {
+    let folder = empty_folder("memory-alerts");
+    let fleet = crossing().replace("at 0.1s 80 times luggage random to random", "at 0.1s luggage (1,1) to (2,2)");
+    fs::write(folder.join("f.composite"), fleet).unwrap();
+    let socket = folder.join("socket");
+    let stranded = || -> Vec<Value> {
+        let alerts = ask(&socket, "GET", "/v1/alerts", "").unwrap();
+        let all = alerts.as_array().or(alerts["alerts"].as_array()).unwrap();
+        all.iter().filter(|alert| alert["kind"] == "stranded" && alert["over_s"].is_null()).cloned().collect()
+    };
+    let mut program = start(&folder);
+    wait_for_pieces(&mut program, &socket, 1);
+    let until = Instant::now() + PATIENCE;
+    while stranded().is_empty() {
+        assert!(Instant::now() < until, "a robot without a charge is stranded");
+        for robot in 1..=4 {
+            ask(&socket, "POST", "/v1/events", "luggage (2,2) to (3,3)").unwrap();
+            sleep(Duration::from_millis(60));
+            ask(&socket, "POST", "/v1/events", &format!("drain robot={robot} percent=100")).unwrap();
+        }
+    }
+    sleep(Duration::from_millis(300));
+    ask(&socket, "POST", "/v1/alerts/ack?by=anna", "").unwrap();
+    let before = stranded();
+    for _ in 0..2 {
+        drop(program);
+        program = start(&folder);
+        wait_for_pieces(&mut program, &socket, 1);
+        let after = stranded();
+        let of = |alerts: &[Value]| alerts.iter().map(|alert| alert["component"].clone()).collect::<Vec<_>>();
+        assert_eq!(of(&after), of(&before));
+        assert!(after.iter().all(|alert| alert["acknowledged"]["by"] == "anna"), "{after:?}");
+    }
+}

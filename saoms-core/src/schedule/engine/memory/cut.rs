@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt;
 use std::mem;
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 
 use saoms_api::host::{SharedMessage, TopicKind, cdr};
 use saoms_api::{Message, Saved};
@@ -11,9 +11,9 @@ use saoms_api::{Message, Saved};
 use super::forms::{
     COMPONENT, COUNTERS, ComponentForm, EVENTS, EventsForm, HeldForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
     NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, SavedForm,
-    StateForm, UnreadForm, WAITING,
+    StateForm, TEXTS, UnreadForm, WAITING,
 };
-use super::{CUT, Ending, Engine, NEVER, Writing};
+use super::{CUT, Ending, Engine, NEVER, SharedText, Writing};
 use crate::bus::TopicId;
 use crate::hash::{fold, text_hash};
 use crate::report::{PartOfReport, Sections};
@@ -36,6 +36,7 @@ pub(super) struct Cut {
     /// By the urls of networks.
     received: Vec<(String, ReceivedForm)>,
     counters: Vec<(String, u64)>,
+    texts: Vec<(String, String)>,
 }
 
 /// What is kept of a component.
@@ -80,7 +81,10 @@ impl Engine {
         let end = self.cause.map(|cause| format!("{cause:?}")).unwrap_or_default();
         let records = self.record_ids.load(std::sync::atomic::Ordering::Relaxed);
         let counters = self.memory.counters.iter().map(|(name, counter)| (name.clone(), counter.value()));
+        let text = |text: &SharedText| text.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let texts = self.memory.texts.iter().map(|(name, shared)| (name.clone(), text(shared))).collect();
         let cut = Cut {
+            texts,
             run: RunForm { time: now, records, end },
             components,
             counters: counters.collect(),
@@ -333,6 +337,9 @@ impl LaterChanges for Cut {
         }
         for (name, value) in &self.counters {
             differences.put(format!("{COUNTERS}{name}"), 0, Some(&value.to_le_bytes()));
+        }
+        for (name, text) in &self.texts {
+            differences.put(format!("{TEXTS}{name}"), 0, Some(text.as_bytes()).filter(|bytes| !bytes.is_empty()));
         }
     }
 }

@@ -28,9 +28,12 @@ pub(super) const NAMES: &str = "(names)\n";
 pub(super) const NAMES_ELSEWHERE: &str = "(names elsewhere)\n";
 /// What the program beside the engine has counted.
 pub(super) const COUNTERS: &str = "(counters)\n";
+/// What the program beside the engine has written.
+pub(super) const TEXTS: &str = "(texts)\n";
 
 /// All names that an entry of the memory may begin with.
-const ALL: [&str; 10] = [RUN, COMPONENT, SCHEMAS, STATES, WAITING, REPORT, RECEIVED, NAMES, NAMES_ELSEWHERE, COUNTERS];
+const ALL: [&str; 11] =
+    [RUN, COMPONENT, SCHEMAS, STATES, WAITING, REPORT, RECEIVED, NAMES, NAMES_ELSEWHERE, COUNTERS, TEXTS];
 
 /// True for the name of an entry of the memory.
 pub(crate) fn is_of_memory(entry: &str) -> bool {

@@ -13,7 +13,7 @@ mod recall;
 mod waiting;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use saoms_api::Saved;
@@ -81,9 +81,14 @@ pub(crate) struct Memory {
     newly_received: BTreeSet<(String, Arc<str>, u64)>,
     /// Counters of the program beside the engine.
     counters: BTreeMap<String, Counter>,
+    /// Texts of the program beside the engine, which it changes by itself.
+    texts: BTreeMap<String, SharedText>,
     /// What an earlier program left, until the fleet has started.
     pub(crate) recalled: Option<Box<Recalled>>,
 }
+
+/// A text that the program beside the engine changes, such as a list.
+pub type SharedText = Arc<Mutex<String>>;
 
 /// A counter of the program beside the engine.
 #[derive(Clone, Debug)]

@@ -12,9 +12,9 @@ use serde_json::Value;
 use super::forms::{
     COMPONENT, COUNTERS, ComponentForm, EVENTS, EventsForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
     NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, SavedForm,
-    StateForm, WAITING,
+    StateForm, TEXTS, WAITING,
 };
-use super::{Counter, Engine, NEVER, SetForm};
+use super::{Counter, Engine, NEVER, SetForm, SharedText};
 use crate::bus::TopicId;
 use crate::hash::text_hash;
 use crate::observe::Occurrence;
@@ -368,6 +368,13 @@ impl Engine {
     ) -> Option<u64> {
         let before = self.memory.counters.insert(name.to_owned(), Counter::Shared(counter));
         before.map(|before| before.value())
+    }
+
+    /// Has cuts contain a text of the program beside the engine; gives that of an earlier program.
+    pub(in crate::schedule) fn share_text(&mut self, name: &str, text: SharedText) -> Option<String> {
+        self.memory.texts.insert(name.to_owned(), text);
+        let bytes = self.found.of(&format!("{TEXTS}{name}"))?.get(&0)?;
+        String::from_utf8(bytes.to_vec()).ok()
     }
 
     /// Sets a counter of the program beside the engine, and gives what it was.
