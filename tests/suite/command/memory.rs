@@ -169,8 +169,15 @@ fn what_was_acknowledged_calls_nobody_again() {
         let all = alerts.as_array().or(alerts["alerts"].as_array()).unwrap();
         all.iter().filter(|alert| alert["kind"] == "stranded" && alert["over_s"].is_null()).cloned().collect()
     };
+    let answers = || {
+        let until = Instant::now() + PATIENCE;
+        while ask(&socket, "GET", "/v1/status", "").is_err() {
+            assert!(Instant::now() < until, "it answers");
+            sleep(Duration::from_millis(20));
+        }
+    };
     let mut program = start(&folder);
-    wait_for_pieces(&mut program, &socket, 1);
+    answers();
     let until = Instant::now() + PATIENCE;
     while stranded().is_empty() {
         assert!(Instant::now() < until, "a robot without a charge is stranded");
@@ -186,7 +193,7 @@ fn what_was_acknowledged_calls_nobody_again() {
     for _ in 0..2 {
         drop(program);
         program = start(&folder);
-        wait_for_pieces(&mut program, &socket, 1);
+        answers();
         let after = stranded();
         let of = |alerts: &[Value]| alerts.iter().map(|alert| alert["component"].clone()).collect::<Vec<_>>();
         assert_eq!(of(&after), of(&before));

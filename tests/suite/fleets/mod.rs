@@ -9,6 +9,7 @@ mod environment;
 mod expand;
 mod failing;
 mod invariants;
+mod machines;
 mod messages;
 mod nodes;
 mod physics;

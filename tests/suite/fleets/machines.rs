@@ -1,0 +1,139 @@
+//! Shipped robots with hardware that no program takes back: after kills at random moments nothing was done twice, nothing
+//! was lost, and no robot has entered a block where another one was.
+//!
+//! The hardware notes outside of the program what it does, and goes on while there is no program. It knows what became of
+//! an action, or does not: then somebody looks at it, and says so.
+
+mod yard;
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
+use saoms_core::schedule::{Order, RunningFleet, Settings};
+use saoms_core::store::Store;
+use saoms_lang::project::Project;
+use saoms_lang::registry::Registry;
+use serde_json::json;
+
+use yard::Yard;
+
+/// The folder of a program that is killed; without it, this is no such program.
+pub(super) const FOLDER: &str = "SAOMS_TEST_MACHINES";
+/// True if the hardware does not know what became of its last action.
+pub(super) const FORGETS: &str = "SAOMS_TEST_MACHINES_FORGET";
+/// Number of kills, unless `SAOMS_KILLS` says another one.
+const KILLS: u64 = 15;
+/// Time within which all is brought that is left after the last kill.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A fleet with a zone and this number of pieces.
+fn fleet(pieces: u64) -> String {
+    let component = |id: &str, class: &str, more: &str| {
+        format!(
+            r#"<component name="{id}"><implementation.rust class="{class}"/><property name="ID">{id}</property>
+            <property name="period">10</property>{more}</component>"#
+        )
+    };
+    let world = r#"<reference name="world" target="Yard"/>"#;
+    let mut components = r#"<component name="Yard"><implementation.rust class="test.Yard"/></component>"#.to_owned();
+    components += &component("Zone", "saoms.Zone", world);
+    components += &component("Master", "saoms.MasterEnvironment", "");
+    let scenario = format!(r#"<property name="scenario">at 0.1s {pieces} times luggage random to random</property>"#);
+    components += &component("Environment", "saoms.Environment", &scenario);
+    for (robot, x, y) in [("Robot1", 0, 0), ("Robot2", 4, 0), ("Robot3", 0, 4)] {
+        let place = [("chargeX", x.to_string()), ("chargeY", y.to_string()), ("discharge", "0.01".to_owned())];
+        let place: String =
+            place.iter().map(|(name, value)| format!(r#"<property name="{name}">{value}</property>"#)).collect();
+        components += &component(robot, "saoms.Robot", &(place + world));
+    }
+    format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
+        {components}</composite>"#
+    )
+}
+
+/// The robots that ask what became of an action, each with what it asks.
+#[derive(Default)]
+struct Questions(Mutex<Vec<(String, String)>>);
+
+impl Observer for Questions {
+    fn event(&self, event: &RunEvent) {
+        if let (Some(component), Occurrence::Alert { kind, text: Some(text), .. }) = (&event.component, &event.what)
+            && &**kind == "open_action"
+        {
+            self.0.lock().unwrap().push((component.to_string(), text.clone()));
+        }
+    }
+
+    fn interest(&self) -> Interest {
+        Interest::NONE
+    }
+}
+
+/// The program that is killed, with the person who answers robots.
+#[test]
+fn program_that_is_killed() {
+    let Some(folder) = std::env::var_os(FOLDER) else { return };
+    let folder = Path::new(&folder);
+    let pieces = std::fs::read_to_string(folder.join("pieces")).unwrap().parse().unwrap();
+    let project = Project::new().text("f.composite", fleet(pieces));
+    let compilation = project.compile(&Registry::linked().unwrap());
+    let assembly = compilation.output.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics));
+    let questions: Arc<Questions> = Arc::default();
+    let store = Store::open(&folder.join("state")).unwrap();
+    let settings = Settings { limit: Some(2 * PATIENCE), ..Settings::default() };
+    let fleet =
+        RunningFleet::start_with(assembly, settings, vec![questions.clone()], |handle| handle.use_store(store)).unwrap();
+    let until = Instant::now() + 2 * PATIENCE;
+    while Instant::now() < until {
+        questions.0.lock().unwrap().retain(|(robot, text)| {
+            let Some(done) = Yard::look(&folder.join("noted"), robot, text) else { return true };
+            let (component, operation) = (robot.clone(), "settle".to_owned());
+            let arguments = vec![("done".to_owned(), json!(done))];
+            let order = Order::Call { component, operation, arguments };
+            fleet.handle().order(order, None).unwrap().wait(Duration::from_secs(5)).is_err()
+        });
+        sleep(Duration::from_millis(2));
+    }
+}
+
+fn kill_at_random_moments(forgets: bool) {
+    let folder = tempfile::tempdir().unwrap();
+    let kills = std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS);
+    std::fs::write(folder.path().join("pieces"), (kills * 3).to_string()).unwrap();
+    let noted = folder.path().join("noted");
+    let mut chance = saoms_api::Chance::for_component(kills, "kills");
+    for kill in 0..=kills {
+        let mut program = Command::new(std::env::current_exe().unwrap());
+        program.args(["--exact", "fleets::machines::program_that_is_killed", "--nocapture"]);
+        program.env(FOLDER, folder.path()).env(FORGETS, forgets.to_string());
+        let told = std::fs::File::create(folder.path().join("told")).unwrap();
+        let mut program = program.stdout(Stdio::null()).stderr(told).spawn().unwrap();
+        let before = yard::deposits(&noted);
+        let until = Instant::now() + if kill == kills { PATIENCE } else { Duration::from_millis(80 + chance.below(500)) };
+        while Instant::now() < until && (kill < kills || yard::deposits(&noted) < kills * 3) {
+            sleep(Duration::from_millis(5));
+        }
+        let ended = program.try_wait().unwrap();
+        program.kill().unwrap();
+        program.wait().unwrap();
+        let told = std::fs::read_to_string(folder.path().join("told")).unwrap();
+        assert_eq!(ended, None, "kill {kill}, {before} deposits: {told}");
+        yard::check(&noted);
+    }
+    assert_eq!(yard::deposits(&noted), kills * 3, "all is delivered, each piece once");
+}
+
+#[test]
+fn hardware_that_knows_what_became_of_its_actions_does_nothing_twice() {
+    kill_at_random_moments(false);
+}
+
+#[test]
+fn hardware_that_a_person_looks_at_does_nothing_twice() {
+    kill_at_random_moments(true);
+}
