@@ -21,7 +21,8 @@ fn fleet(time: &str) -> (Fleet, Vec<usize>) {
     let world = fleet.add::<World>("World", period, zero, &map, &[]);
     fleet.add::<Zone>("Zone", period, period / 2, &[], &[("world", world, "hardware")]);
     fleet.add::<MasterEnvironment>("MasterEnvironment", period, zero, &[], &[]);
-    let lines = ["(0,0) to (2,2)", "(2,0) to (0,2)", "(2,2) to (0,0)", "(0,2) to (2,0)", "(1,0) to (1,2)", "(1,2) to (1,0)"];
+    let lines =
+        ["(0,0) to (2,2)", "(2,0) to (0,2)", "(2,2) to (0,0)", "(0,2) to (2,0)", "(1,0) to (1,2)", "(1,2) to (1,0)"];
     let scenario: String = lines.iter().map(|line| format!("at 0.2s luggage {line}\n")).collect();
     fleet.add::<Environment>("Environment", period, zero, &[("scenario", &scenario)], &[]);
     let robots = [("Robot1", "0", "1"), ("Robot2", "2", "1"), ("Robot3", "1", "0")].map(|(id, x, y)| {

@@ -210,6 +210,7 @@ fn fleet_of(text: &str) -> Assembly {
         Registration::of::<Hearer>(),
         Registration::of::<Book>(),
         Registration::of::<apart::Clerk>(),
+        Registration::of::<apart::Patient>(),
     ] {
         registry.add(class).unwrap();
     }

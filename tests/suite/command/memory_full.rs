@@ -112,9 +112,11 @@ fn a_full_disk_keeps_what_was_accepted_and_refuses_more() {
         program = disk.start();
         assert_eq!(wait_for_pieces(&mut program, &socket, accepted), (accepted, 0));
         disk.fill();
-        until("it is known that the disk is full", || send("luggage (0,1) to (5,4)").is_err() || {
-            accepted += 1;
-            false
+        until("it is known that the disk is full", || {
+            send("luggage (0,1) to (5,4)").is_err() || {
+                accepted += 1;
+                false
+            }
         });
         until("all is delivered", || pieces(&socket).is_ok_and(|(_, open)| open == 0));
     }

@@ -6,6 +6,8 @@
 
 mod yard;
 
+use std::fs::OpenOptions;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -42,7 +44,8 @@ fn fleet(pieces: u64) -> String {
     let mut components = r#"<component name="Yard"><implementation.rust class="test.Yard"/></component>"#.to_owned();
     components += &component("Zone", "saoms.Zone", world);
     components += &component("Master", "saoms.MasterEnvironment", "");
-    let scenario = format!(r#"<property name="scenario">at 0.1s {pieces} times luggage random to random</property>"#);
+    let scenario =
+        format!(r#"<property name="scenario">at 0.1s {pieces} times luggage (0,0)..(4,4) to (0,0)..(4,4)</property>"#);
     components += &component("Environment", "saoms.Environment", &scenario);
     for (robot, x, y) in [("Robot1", 0, 0), ("Robot2", 4, 0), ("Robot3", 0, 4)] {
         let place = [("chargeX", x.to_string()), ("chargeY", y.to_string()), ("discharge", "0.01".to_owned())];
@@ -86,8 +89,8 @@ fn program_that_is_killed() {
     let questions: Arc<Questions> = Arc::default();
     let store = Store::open(&folder.join("state")).unwrap();
     let settings = Settings { limit: Some(2 * PATIENCE), ..Settings::default() };
-    let fleet =
-        RunningFleet::start_with(assembly, settings, vec![questions.clone()], |handle| handle.use_store(store)).unwrap();
+    let fleet = RunningFleet::start_with(assembly, settings, vec![questions.clone()], |handle| handle.use_store(store))
+        .unwrap();
     let until = Instant::now() + 2 * PATIENCE;
     while Instant::now() < until {
         questions.0.lock().unwrap().retain(|(robot, text)| {
@@ -95,7 +98,12 @@ fn program_that_is_killed() {
             let (component, operation) = (robot.clone(), "settle".to_owned());
             let arguments = vec![("done".to_owned(), json!(done))];
             let order = Order::Call { component, operation, arguments };
-            fleet.handle().order(order, None).unwrap().wait(Duration::from_secs(5)).is_err()
+            let is_heard = fleet.handle().order(order, None).unwrap().wait(Duration::from_secs(5)).is_ok();
+            if is_heard {
+                let mut answers = OpenOptions::new().create(true).append(true).open(folder.join("answers")).unwrap();
+                writeln!(answers, "{robot} {done}").unwrap();
+            }
+            !is_heard
         });
         sleep(Duration::from_millis(2));
     }
@@ -114,7 +122,8 @@ fn kill_at_random_moments(forgets: bool) {
         let told = std::fs::File::create(folder.path().join("told")).unwrap();
         let mut program = program.stdout(Stdio::null()).stderr(told).spawn().unwrap();
         let before = yard::deposits(&noted);
-        let until = Instant::now() + if kill == kills { PATIENCE } else { Duration::from_millis(80 + chance.below(500)) };
+        let until =
+            Instant::now() + if kill == kills { PATIENCE } else { Duration::from_millis(80 + chance.below(500)) };
         while Instant::now() < until && (kill < kills || yard::deposits(&noted) < kills * 3) {
             sleep(Duration::from_millis(5));
         }
@@ -126,6 +135,8 @@ fn kill_at_random_moments(forgets: bool) {
         yard::check(&noted);
     }
     assert_eq!(yard::deposits(&noted), kills * 3, "all is delivered, each piece once");
+    let answers = std::fs::read_to_string(folder.path().join("answers")).unwrap_or_default();
+    assert_eq!(answers.contains("true") && answers.contains("false"), forgets, "{answers}");
 }
 
 #[test]

@@ -147,7 +147,7 @@ impl Engine {
         };
         slot.out_since = caller.now;
         self.out += 1;
-        self.note_code(index);
+        self.note_code(index, &body);
         self.note_caller(caller.index);
         Ok(body)
     }

@@ -67,7 +67,7 @@ impl Engine {
         self.out += 1;
         slot.out_since = now;
         body.part.now = now;
-        self.note_code(index);
+        self.note_code(index, &body);
         let slot = &mut self.slots[index as usize];
         if matches!(job, Job::Start | Job::Shutdown | Job::Order) {
             body.part.collection.reset();

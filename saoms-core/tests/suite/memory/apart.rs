@@ -1,14 +1,16 @@
 //! Executions on other threads: who called another component, and that one, go back to the same moment.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Saved};
+use saoms_api::{Class, Component, Context, Failure, Saved, Subscription};
+use saoms_core::schedule::{InjectedContent, Injection};
+use serde_json::json;
 
 use super::{Count, behind, run};
-use crate::actor::EchoReference;
+use crate::actor::{EchoReference, NUMBERS, Own};
 use crate::fleet::real;
 
 /// Number of executions of the clerk that have called, and of those that are over.
@@ -56,6 +58,49 @@ impl Component for Clerk {
     }
 }
 
+/// True once the patient has failed, and while it starts again.
+static FAILED: AtomicBool = AtomicBool::new(false);
+static STARTS: AtomicBool = AtomicBool::new(false);
+
+/// Fails when it hears a number for the first time, and takes long to start again.
+#[derive(Class)]
+#[class(name = "patient", periodic, saves, apart)]
+pub(super) struct Patient {
+    #[subscribes(NUMBERS)]
+    numbers: Subscription<Own>,
+}
+
+impl Component for Patient {
+    type Properties = ();
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if context.goes_on() && !context.goes_on_from_earlier_program() {
+            STARTS.store(true, Ordering::SeqCst);
+            sleep(Duration::from_millis(200));
+            STARTS.store(false, Ordering::SeqCst);
+        }
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for number in context.receive(&self.numbers) {
+            if !FAILED.swap(true, Ordering::SeqCst) {
+                return Err("it is ill".into());
+            }
+            context.info(format!("has heard {}", number.value));
+        }
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::of(&Count { count: 1 }))
+    }
+
+    fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
 /// What a crash at this moment would leave.
 fn copy(folder: &Path) -> tempfile::TempDir {
     let copy = tempfile::tempdir().unwrap();
@@ -92,7 +137,7 @@ fn who_called_and_who_was_called_go_back_to_the_same_moment() {
         assert!(told.contains("goes on from its state"), "{place}: {told}");
         assert!(!behind(&told, "C: has asked ").is_empty(), "{told}");
         assert_eq!(report.outcome.reasons, Vec::<String>::new());
-    }    // Code that does not return is waited for once.
+    } // Code that does not return is waited for once.
     let folder = tempfile::tempdir().unwrap();
     let fleet = fleet.replace("takes=60", "takes=4000");
     CALLED.store(0, Ordering::SeqCst);
@@ -103,4 +148,25 @@ fn who_called_and_who_was_called_go_back_to_the_same_moment() {
         assert_eq!(RETURNED.load(Ordering::SeqCst), 0, "nobody waits for it for long");
         handle.stop();
     });
+}
+
+#[test]
+fn what_a_component_heard_in_vain_is_there_while_it_starts_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let fleet = "P patient period=3 restart=1ms/5\nT teller period=2";
+    let mut crash = None;
+    run(fleet, real(20_000), folder.path(), |handle| {
+        let content = InjectedContent::Fields(json!({"value": 42}));
+        let text = "a number".to_owned();
+        handle.inject(Injection { topic: "NUMBERS".to_owned(), content, at: None, text }).unwrap();
+        while !STARTS.load(Ordering::SeqCst) {
+            sleep(Duration::from_millis(1));
+        }
+        handle.commit(Duration::from_secs(10)).unwrap();
+        assert!(STARTS.load(Ordering::SeqCst), "it still starts");
+        crash = Some(copy(folder.path()));
+        handle.stop();
+    });
+    let (_, told) = run(fleet, real(100), crash.unwrap().path(), |_| {});
+    assert_eq!(told.matches("P: has heard 42").count(), 1, "{told}");
 }

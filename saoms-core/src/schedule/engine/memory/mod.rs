@@ -13,8 +13,8 @@ mod recall;
 mod waiting;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
 
 use saoms_api::Saved;
 use saoms_api::host::SharedMessage;

@@ -3,8 +3,11 @@
 //! An execution on another thread counts as not begun. Once it has called another component, that one knows of it, so
 //! that both would not go back to the same moment: such an execution has to return before the cut.
 
+use saoms_api::host::{SharedMessage, TopicKind};
+
 use super::super::{Engine, NEVER, Next, RunPhase};
-use crate::schedule::component::body::Job;
+use crate::bus::TopicId;
+use crate::schedule::component::body::{Body, Job};
 
 /// Time for which a cut waits for code that runs on another thread, and has to be in it.
 const PATIENCE: u64 = 1_000_000_000;
@@ -38,11 +41,31 @@ impl Engine {
         }
     }
 
-    /// Notes that the code of a component begins.
+    /// Notes that the code of a component begins. Events that it was given before count as unread until it returns,
+    /// whatever it does.
     #[inline]
-    pub(crate) fn note_code(&mut self, index: u32) {
+    pub(crate) fn note_code(&mut self, index: u32, body: &Body) {
         let memory = &mut self.slots[index as usize].memory;
         (memory.has_called, memory.is_given_up) = (false, false);
+        if !self.memory.with_inbox.is_empty() {
+            self.note_given(index, body);
+        }
+    }
+
+    #[cold]
+    fn note_given(&mut self, index: u32, body: &Body) {
+        if !self.memory.is_on() || !self.memory.with_inbox.contains(&index) {
+            return;
+        }
+        let inboxes = body.part.subscriptions.iter().zip(&body.inboxes);
+        let inboxes = inboxes.chain(body.part.subscriptions.iter().zip(&body.reactions));
+        let inboxes = inboxes.map(|(subscription, inbox)| (self.bus.topic_of(subscription), inbox));
+        let given = body.part.lasting.unread().map(|(topic, events)| (*topic, events)).chain(inboxes);
+        let is_event = |(topic, events): &(TopicId, &Vec<SharedMessage>)| {
+            !events.is_empty() && self.bus.kind(*topic) == TopicKind::Event
+        };
+        let given: Vec<_> = given.filter(is_event).map(|(topic, events)| (topic, events.clone())).collect();
+        self.slots[index as usize].memory.reading.extend(given);
     }
 
     /// A cut, or what a component has to save before; `None` while it waits for code on another thread.
