@@ -23,6 +23,8 @@ pub(super) struct Yard {
     /// Where it notes; none for one that does not run.
     noted: Option<PathBuf>,
     forgets: bool,
+    /// The newest action of each robot, or where it entered: what the hardware itself remembers.
+    newest: BTreeMap<u32, Note>,
 }
 
 /// A line of the notes.
@@ -62,23 +64,18 @@ fn is_over(note: &Note) -> bool {
 }
 
 impl Yard {
-    fn path(&self) -> Result<&Path, Failure> {
-        self.noted.as_deref().ok_or_else(|| "this yard does not run".into())
-    }
-
-    fn note(&self, robot: u32, what: &str) -> Result<(), Failure> {
-        let mut file = OpenOptions::new().create(true).append(true).open(self.path()?).unwrap();
-        file.write_all(format!("{} {robot} {what}\n", now().as_nanos()).as_bytes()).unwrap();
+    fn note(&mut self, robot: u32, what: &str) -> Result<(), Failure> {
+        let path = self.noted.as_deref().ok_or_else(|| Failure::new("this yard does not run"))?;
+        let mut file = OpenOptions::new().create(true).append(true).open(path).unwrap();
+        let at = now();
+        file.write_all(format!("{} {robot} {what}\n", at.as_nanos()).as_bytes()).unwrap();
+        self.newest.insert(robot, Note { at, robot, what: what.to_owned() });
         Ok(())
     }
 
-    fn newest(&self, robot: u32) -> Result<Option<Note>, Failure> {
-        Ok(newest(self.path()?, robot))
-    }
-
     /// Where a robot is once its action is over.
-    fn place(&self, robot: u32) -> Result<Option<Block>, Failure> {
-        Ok(self.newest(robot)?.map(|note| block(&note.what)))
+    fn place(&self, robot: u32) -> Option<Block> {
+        self.newest.get(&robot).map(|note| block(&note.what))
     }
 
     /// What a person sees who looks whether the action was done of which a robot asks; `None` while it goes on.
@@ -96,6 +93,8 @@ impl Component for Yard {
 
     fn initialize(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
         self.noted = std::env::var_os(FOLDER).map(|folder| Path::new(&folder).join("noted"));
+        let all = self.noted.as_deref().map(notes).unwrap_or_default();
+        self.newest = all.into_iter().map(|note| (note.robot, note)).collect();
         self.forgets = std::env::var(FORGETS).as_deref() == Ok("true");
         Ok(())
     }
@@ -103,7 +102,7 @@ impl Component for Yard {
 
 impl Hardware for Yard {
     fn enter(&mut self, _: &mut Context<'_>, robot: u32, _: String, block: Block) -> Result<Block, Failure> {
-        if let Some(place) = self.place(robot)? {
+        if let Some(place) = self.place(robot) {
             return Ok(place);
         }
         self.note(robot, &format!("enters at {block}"))?;
@@ -120,7 +119,7 @@ impl Hardware for Yard {
     }
 
     fn poll(&mut self, _: &mut Context<'_>, robot: u32) -> Result<Progress, Failure> {
-        Ok(if self.newest(robot)?.is_none_or(|note| is_over(&note)) { Progress::Done } else { Progress::Running })
+        Ok(if self.newest.get(&robot).is_none_or(is_over) { Progress::Done } else { Progress::Running })
     }
 
     fn cancel(&mut self, _: &mut Context<'_>, _: u32) -> Result<(), Failure> {
@@ -128,18 +127,18 @@ impl Hardware for Yard {
     }
 
     fn retire(&mut self, _: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
-        self.place(robot)?.ok_or_else(|| "it has not entered".into())
+        self.place(robot).ok_or_else(|| "it has not entered".into())
     }
 
     fn is_on_floor(&mut self, _: &mut Context<'_>, robot: u32) -> Result<bool, Failure> {
-        Ok(self.place(robot)?.is_some())
+        Ok(self.place(robot).is_some())
     }
 
     fn recall(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Option<Progress>, Failure> {
         if self.forgets {
             return Ok(None);
         }
-        match self.newest(robot)? {
+        match self.newest.get(&robot) {
             Some(note) if note.what == action.to_string() => self.poll(context, robot).map(Some),
             _ => Ok(Some(Progress::Failed)),
         }
