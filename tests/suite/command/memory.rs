@@ -7,14 +7,13 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use super::state::crossing;
-use crate::support::{command, empty_folder, saoms_in, text};
+use crate::support::{Program, command, empty_folder, saoms_in, text};
 
 /// Number of kills, unless `SAOMS_KILLS` says another one.
 const KILLS: u64 = 12;
@@ -56,16 +55,6 @@ impl Dice {
     fn below(&mut self, end: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % end
-    }
-}
-
-/// A program that does not outlive the test.
-pub(super) struct Program(pub(super) Child);
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
     }
 }
 

@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use super::memory::{PATIENCE, Program, ask, pieces, wait_for_pieces};
+use super::memory::{PATIENCE, ask, pieces, wait_for_pieces};
 use super::state::crossing;
-use crate::support::{PROGRAM, empty_folder};
+use crate::support::{PROGRAM, Program, empty_folder};
 
 /// Size of the disk: the log and one in its place need 8 MiB at first.
 const SIZE: &str = "24m";

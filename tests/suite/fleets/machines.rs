@@ -23,14 +23,19 @@ use serde_json::json;
 
 use yard::Yard;
 
+use crate::support::Program;
+
 /// The folder of a program that is killed; without it, this is no such program.
 pub(super) const FOLDER: &str = "SAOMS_TEST_MACHINES";
 /// True if the hardware does not know what became of its last action.
 pub(super) const FORGETS: &str = "SAOMS_TEST_MACHINES_FORGET";
 /// Number of kills, unless `SAOMS_KILLS` says another one.
 const KILLS: u64 = 15;
-/// Time within which all is brought that is left after the last kill.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// Number of pieces for each kill.
+const PIECES: u64 = 2;
+/// Time within which another piece is brought after the last kill, and time after which no program is left.
+const PATIENCE: Duration = Duration::from_secs(30);
+const LONG: Duration = Duration::from_secs(3600);
 
 /// A fleet with a zone and this number of pieces.
 fn fleet(pieces: u64) -> String {
@@ -88,10 +93,10 @@ fn program_that_is_killed() {
     let assembly = compilation.output.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics));
     let questions: Arc<Questions> = Arc::default();
     let store = Store::open(&folder.join("state")).unwrap();
-    let settings = Settings { limit: Some(2 * PATIENCE), ..Settings::default() };
+    let settings = Settings { limit: Some(LONG), ..Settings::default() };
     let fleet = RunningFleet::start_with(assembly, settings, vec![questions.clone()], |handle| handle.use_store(store))
         .unwrap();
-    let until = Instant::now() + 2 * PATIENCE;
+    let until = Instant::now() + LONG;
     while Instant::now() < until {
         questions.0.lock().unwrap().retain(|(robot, text)| {
             let Some(done) = Yard::look(&folder.join("noted"), robot, text) else { return true };
@@ -112,7 +117,7 @@ fn program_that_is_killed() {
 fn kill_at_random_moments(forgets: bool) {
     let folder = tempfile::tempdir().unwrap();
     let kills = std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS);
-    std::fs::write(folder.path().join("pieces"), (kills * 3).to_string()).unwrap();
+    std::fs::write(folder.path().join("pieces"), (kills * PIECES).to_string()).unwrap();
     let noted = folder.path().join("noted");
     let mut chance = saoms_api::Chance::for_component(kills, "kills");
     for kill in 0..=kills {
@@ -120,21 +125,25 @@ fn kill_at_random_moments(forgets: bool) {
         program.args(["--exact", "fleets::machines::program_that_is_killed", "--nocapture"]);
         program.env(FOLDER, folder.path()).env(FORGETS, forgets.to_string());
         let told = std::fs::File::create(folder.path().join("told")).unwrap();
-        let mut program = program.stdout(Stdio::null()).stderr(told).spawn().unwrap();
+        let mut program = Program(program.stdout(Stdio::null()).stderr(told).spawn().unwrap());
         let before = yard::deposits(&noted);
-        let until =
-            Instant::now() + if kill == kills { PATIENCE } else { Duration::from_millis(80 + chance.below(500)) };
-        while Instant::now() < until && (kill < kills || yard::deposits(&noted) < kills * 3) {
-            sleep(Duration::from_millis(5));
+        if kill < kills {
+            sleep(Duration::from_millis(80 + chance.below(500)));
+        } else {
+            let mut last = (before, Instant::now());
+            while last.0 < kills * PIECES && last.1.elapsed() < PATIENCE {
+                sleep(Duration::from_millis(50));
+                let now = yard::deposits(&noted);
+                last = if now > last.0 { (now, Instant::now()) } else { last };
+            }
         }
-        let ended = program.try_wait().unwrap();
-        program.kill().unwrap();
-        program.wait().unwrap();
+        let ended = program.0.try_wait().unwrap();
+        drop(program);
         let told = std::fs::read_to_string(folder.path().join("told")).unwrap();
         assert_eq!(ended, None, "kill {kill}, {before} deposits: {told}");
         yard::check(&noted);
     }
-    assert_eq!(yard::deposits(&noted), kills * 3, "all is delivered, each piece once");
+    assert_eq!(yard::deposits(&noted), kills * PIECES, "all is delivered, each piece once");
     let answers = std::fs::read_to_string(folder.path().join("answers")).unwrap_or_default();
     assert_eq!(answers.contains("true") && answers.contains("false"), forgets, "{answers}");
 }

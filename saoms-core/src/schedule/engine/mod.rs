@@ -259,7 +259,7 @@ impl Engine {
                         match self.next_while_paused(now) {
                             Some(next) => return next,
                             None if self.phase == RunPhase::Running => {
-                                return self.next_for_cut_while_paused(now).unwrap_or(Next::Wait(NEVER));
+                                return self.next_for_cut_while_paused(now).unwrap_or_else(|| self.wait_for_cut());
                             }
                             None => continue,
                         }

@@ -8,6 +8,7 @@ use saoms_api::host::{SharedMessage, TopicKind};
 use super::super::{Engine, NEVER, Next, RunPhase};
 use crate::bus::TopicId;
 use crate::schedule::component::body::{Body, Job};
+use crate::schedule::os::sys;
 
 /// Time for which a cut waits for code that runs on another thread, and has to be in it.
 const PATIENCE: u64 = 1_000_000_000;
@@ -15,8 +16,10 @@ const PATIENCE: u64 = 1_000_000_000;
 /// How the next cut waits for code.
 #[derive(Debug, Default)]
 pub(super) struct CodeInCalls {
-    /// The time until which it waits at most, if it waits.
+    /// The time until which it waits at most, if it waits; and the same on the clock of the machine, which does not
+    /// stand still while the fleet pauses.
     until: Option<u64>,
+    until_on_machine: u64,
     /// True until some code returns.
     is_blocked: bool,
     /// Components whose code has called another one, and may not have returned.
@@ -71,7 +74,7 @@ impl Engine {
     /// A cut, or what a component has to save before; `None` while it waits for code on another thread.
     #[cold]
     pub(super) fn cut_or_save(&mut self, now: u64) -> Option<Next> {
-        let is_late = self.memory.code.until.is_some_and(|until| now >= until);
+        let is_late = self.memory.code.until.is_some() && sys::monotonic() >= self.memory.code.until_on_machine;
         while let Some(index) = self.memory.touched.last().copied() {
             let slot = &mut self.slots[index as usize];
             let is_touched = slot.memory.is_touched && !slot.held && slot.is_alive();
@@ -104,7 +107,10 @@ impl Engine {
 
     #[cold]
     fn wait_for_code(&mut self, now: u64) -> Option<Next> {
-        self.memory.code.until.get_or_insert(now.saturating_add(PATIENCE));
+        if self.memory.code.until.is_none() {
+            self.memory.code.until = Some(now.saturating_add(PATIENCE));
+            self.memory.code.until_on_machine = sys::monotonic().saturating_add(PATIENCE);
+        }
         self.memory.code.is_blocked = true;
         self.memory.schedule();
         None
@@ -112,7 +118,12 @@ impl Engine {
 
     /// The last cut of a run that ends, or what a component has to save before.
     pub(in super::super) fn next_for_last_cut(&mut self, now: u64) -> Next {
-        self.cut_or_save(now).unwrap_or_else(|| Next::Wait(self.memory.code.until.unwrap_or(NEVER)))
+        self.cut_or_save(now).unwrap_or_else(|| self.wait_for_cut())
+    }
+
+    /// Waits until there is use in trying again.
+    pub(in super::super) fn wait_for_cut(&self) -> Next {
+        Next::Wait(self.memory.code.until.unwrap_or(NEVER))
     }
 
     /// Looks again whether a cut can be made, since some code has returned.
