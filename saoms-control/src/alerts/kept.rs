@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::list::{Acknowledgement, Alert};
 
 /// An alert that somebody took notice of, as the next program knows it.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Noted {
     component: Option<String>,
     kind: String,
@@ -24,14 +24,14 @@ impl Noted {
     }
 }
 
-/// The text for the next program.
-pub(super) fn text<'a>(alerts: impl Iterator<Item = &'a Alert>) -> String {
+/// The text for the next program, with what the earlier one left that was not raised again yet.
+pub(super) fn text<'a>(alerts: impl Iterator<Item = &'a Alert>, left: &[Noted]) -> String {
     let noted = |alert: &Alert| {
         let acknowledged = alert.acknowledged.clone().filter(|_| alert.over_s.is_none())?;
         let Alert { component, kind, subject, .. } = alert.clone();
         Some(Noted { component, kind, subject, acknowledged })
     };
-    let all: Vec<Noted> = alerts.filter_map(noted).collect();
+    let all: Vec<Noted> = alerts.filter_map(noted).chain(left.iter().cloned()).collect();
     if all.is_empty() { String::new() } else { serde_json::to_string(&all).unwrap_or_default() }
 }
 

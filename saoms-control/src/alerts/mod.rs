@@ -113,6 +113,8 @@ impl AlertList {
         list.noted = left.map(|left| kept::read(&left)).unwrap_or_default();
         list.goes_on_at_s = handle.progress().time.as_secs_f64();
         list.last_time_s = list.goes_on_at_s;
+        // This program may end before it has raised them again.
+        self.keep(&list);
     }
 
     /// Says that a person is needed for something of this program, not of a component.
@@ -148,7 +150,7 @@ impl AlertList {
 
     /// Writes down what the next program has to know. Called under the lock of the list.
     fn keep(&self, list: &List) {
-        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = kept::text(list.all());
+        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = kept::text(list.all(), &list.noted);
     }
 
     /// Tells clients and targets of a change. Called under the lock of the list, so that all get the same order.
