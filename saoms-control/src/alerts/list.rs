@@ -86,8 +86,8 @@ pub(super) struct List {
     kinds: BTreeMap<String, u64>,
     /// Time of the newest event in seconds.
     pub(super) last_time_s: f64,
-    /// What was acknowledged in an earlier program, and the time at which this one goes on: alerts that are raised again
-    /// then are the same.
+    /// What was acknowledged in an earlier program, and the time at which this one goes on: alerts that are raised
+    /// again then are the same.
     pub(super) noted: Vec<Noted>,
     pub(super) goes_on_at_s: f64,
 }

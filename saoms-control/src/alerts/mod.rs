@@ -105,8 +105,8 @@ impl AlertList {
         targets.finish(patience)
     }
 
-    /// Has acknowledgements outlive the program: what an earlier one left counts for the alerts that are raised again at
-    /// the time at which this one goes on.
+    /// Has acknowledgements outlive the program: what an earlier one left counts for the alerts that are raised again
+    /// at the time at which this one goes on.
     pub fn outlive(&self, handle: &Handle) {
         let left = handle.share_text("acknowledged alerts", &self.kept);
         let mut list = self.lock();

@@ -1,8 +1,8 @@
-//! Shipped robots with hardware that no program takes back: after kills at random moments nothing was done twice, nothing
-//! was lost, and no robot has entered a block where another one was.
+//! Shipped robots with hardware that no program takes back: after kills at random moments nothing was done twice,
+//! nothing was lost, and no robot has entered a block where another one was.
 //!
-//! The hardware notes outside of the program what it does, and goes on while there is no program. It knows what became of
-//! an action, or does not: then somebody looks at it, and says so.
+//! The hardware notes outside of the program what it does, and goes on while there is no program. It knows what became
+//! of an action, or does not: then somebody looks at it, and says so.
 
 mod yard;
 
