@@ -3,7 +3,7 @@
 use saoms_api::{Failure, Field, Message, Saved, Time};
 
 use super::Environment;
-use super::open_job::OpenJob;
+use super::open_job::{KnownRobot, OpenJob};
 use super::player::{Player, PlayerMemory};
 use crate::validation::SpeakerMemory;
 
@@ -12,7 +12,7 @@ struct EnvironmentMemory {
     playing: Option<Playing>,
     played: u64,
     open: Vec<OpenPiece>,
-    out: Vec<OutRobot>,
+    robots: Vec<RobotMemory>,
     luggage: u32,
     visits: u32,
     speakers: SpeakerMemory,
@@ -27,9 +27,9 @@ struct Playing {
 }
 
 #[derive(Clone, Debug, Field)]
-struct OutRobot {
+struct RobotMemory {
     robot: u32,
-    since: Time,
+    known: KnownRobot,
 }
 
 #[derive(Clone, Debug, Field)]
@@ -46,7 +46,7 @@ impl Environment {
             playing: playing.map(|(start, player)| Playing { start: *start, player: player.memory() }),
             played: self.played as u64,
             open: open.collect(),
-            out: self.out.iter().map(|(&robot, &since)| OutRobot { robot, since }).collect(),
+            robots: self.robots_known.iter().map(|(&robot, &known)| RobotMemory { robot, known }).collect(),
             luggage: self.luggage,
             visits: self.visits,
             speakers: self.validator.memory(),
@@ -64,7 +64,7 @@ impl Environment {
         };
         self.played = usize::try_from(memory.played).unwrap_or(usize::MAX);
         self.open = memory.open.into_iter().map(|piece| (piece.luggage, piece.job)).collect();
-        self.out = memory.out.into_iter().map(|out| (out.robot, out.since)).collect();
+        self.robots_known = memory.robots.into_iter().map(|robot| (robot.robot, robot.known)).collect();
         (self.luggage, self.visits) = (memory.luggage, memory.visits);
         self.validator.restore(memory.speakers);
         (self.has_world, self.done) = (memory.has_world, memory.done);

@@ -21,13 +21,13 @@ use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, FIRST_VISIT, Fault,
-    LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit,
+    AREA, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage,
+    ExceptionalKind, FIRST_VISIT, Fault, LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit,
 };
 use crate::report::pieces;
-use crate::validation::MessageValidator;
+use crate::validation::{MessageValidator, Validate};
 
-use open_job::OpenJob;
+use open_job::{KnownRobot, OpenJob};
 use player::Player;
 
 pub use player::ScenarioEvent;
@@ -66,8 +66,8 @@ pub struct Environment {
     /// Luggage and visits that are published, but not done yet.
     open: BTreeMap<u32, OpenJob>,
     most_open: usize,
-    /// The time since when each robot is out that was taken off the floor, or whose component failed.
-    out: BTreeMap<u32, Time>,
+    /// What is known of robots, by number.
+    robots_known: BTreeMap<u32, KnownRobot>,
     luggage: u32,
     visits: u32,
     map: Option<Map>,
@@ -85,6 +85,8 @@ pub struct Environment {
     area: Subscription<Area>,
     #[subscribes(REMOVAL)]
     removals: Subscription<Removal>,
+    #[subscribes(CRITICAL_SITUATION)]
+    situations: Subscription<CriticalSituation>,
     done: bool,
 }
 
@@ -101,7 +103,7 @@ impl Component for Environment {
             playing: None,
             played: 0,
             open: BTreeMap::new(),
-            out: BTreeMap::new(),
+            robots_known: BTreeMap::new(),
             most_open: properties.most_open.map_or(usize::MAX, |most| most as usize),
             luggage: 0,
             visits: 0,
@@ -114,6 +116,7 @@ impl Component for Environment {
             responses: Subscription::default(),
             area: Subscription::default(),
             removals: Subscription::default(),
+            situations: Subscription::default(),
             done: false,
         })
     }
@@ -199,12 +202,18 @@ impl Environment {
         for (header, robot) in context.receive(&self.robots).with_headers() {
             self.validator.accepts(robot, header, self.map.as_ref(), context);
         }
+        for (header, situation) in context.receive(&self.situations).with_headers() {
+            // Masters and robots report impossible ones.
+            if situation.validate(header.sender, &mut self.validator, self.map.as_ref()).is_ok() {
+                self.hear_situation(situation, header, context.execution());
+            }
+        }
         for (header, removal) in context.receive(&self.removals).with_headers() {
             if self.validator.accepts(removal, header, self.map.as_ref(), context) {
                 self.open.retain(|luggage, _| !removal.delivered.contains(luggage));
                 let execution = context.execution();
-                let since = self.out.entry(removal.robot).or_default();
-                *since = removal.since.max(*since);
+                let out = &mut self.robots_known.entry(removal.robot).or_default().out;
+                *out = (*out).max(Some(removal.since));
                 self.open.iter_mut().for_each(|(number, job)| job.hear_removal(*number, removal, execution));
             }
         }
@@ -217,9 +226,7 @@ impl Environment {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,
                 _ => {
-                    let (out, execution) = (self.out.get(&response.robot).copied(), context.execution());
-                    let job = self.open.entry(response.luggage);
-                    job.and_modify(|job| job.hear(response, header.sent, out, execution));
+                    self.hear_of_job(response, header, context.execution());
                     continue;
                 }
             };

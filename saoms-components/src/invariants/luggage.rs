@@ -17,6 +17,8 @@ pub(super) struct Pieces {
     all: BTreeMap<u32, Piece>,
     /// Pieces on robots that are broken, with the robot, until somebody takes them over.
     stranded: BTreeMap<u32, (u32, Time)>,
+    /// Since when robots are out of which the world said what they left.
+    removed: BTreeMap<u32, Time>,
 }
 
 #[derive(Debug)]
@@ -102,8 +104,12 @@ impl Pieces {
 
     /// The world says what a robot left that is gone or has failed.
     pub(super) fn hear_removal(&mut self, message: &SharedMessage, at: Time) {
-        let Some(Removal { robot, luggage, delivered, .. }) = message.get::<Removal>() else { return };
-        for luggage in luggage {
+        let Some(Removal { robot, since, block, luggage, delivered, .. }) = message.get::<Removal>() else { return };
+        // The world may say it again.
+        let last = self.removed.entry(*robot).or_default();
+        let is_new = block.is_some() && since > last;
+        *last = if is_new { *since } else { *last };
+        for luggage in luggage.iter().filter(|_| is_new) {
             self.stranded.entry(*luggage).or_insert((*robot, at));
         }
         for luggage in delivered {

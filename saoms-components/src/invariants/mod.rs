@@ -179,7 +179,10 @@ impl RunInvariants for FleetInvariants {
             Content::Drain => self.tide.rise_until(robots.hear_drain(message)),
             Content::Outage => self.tide.rise_until(robots.hear_outage(message)),
             Content::Assignment => pieces.hear_assignment(message, at),
-            Content::Removal => pieces.hear_removal(message, at),
+            Content::Removal => {
+                robots.hear_removal(message);
+                pieces.hear_removal(message, at);
+            }
             Content::Critical => {
                 robots.hear_critical(message);
                 pieces.hear_critical(message, at);

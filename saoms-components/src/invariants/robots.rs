@@ -11,8 +11,8 @@ use super::{BATTERY, Finder, MOVES, NO_DEADLOCK, NO_SWAP, ONE_IN_A_BLOCK, bound}
 use crate::grid::{Block, Map};
 use crate::hardware::Area;
 use crate::messages::{
-    Collision, CriticalSituation, CriticalStage, EventLuggage, Fault, FaultKind, LuggageStage, Position, RobotList,
-    job_name,
+    Collision, CriticalSituation, CriticalStage, EventLuggage, Fault, FaultKind, LuggageStage, Position, Removal,
+    RobotList, job_name,
 };
 
 /// The robots of a site.
@@ -146,6 +146,14 @@ impl Robots {
             }
             let starts_elsewhere = fault.kind == FaultKind::Gone || fault.is_failure() && fault.block.is_none();
             self.put_out(fault.robot, starts_elsewhere);
+        }
+    }
+
+    /// The world says what a robot left that is out.
+    pub(super) fn hear_removal(&mut self, message: &SharedMessage) {
+        let Some(Removal { robot, kind: Some(_), since, .. }) = message.get::<Removal>() else { return };
+        if self.all.get(robot).is_some_and(|robot| !robot.is_since(*since)) {
+            self.put_out(*robot, false);
         }
     }
 

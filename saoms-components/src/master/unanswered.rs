@@ -16,9 +16,14 @@ const TELLS_AFTER: u32 = 160;
 /// The kind of alerts about robots of which no world says what they left.
 const NO_ANSWER: &str = "removal_unknown";
 
-/// Robots of which no world has said yet what they left, with the number of executions since that is missing.
+/// Robots of which no world has said yet what they left.
 #[derive(Debug, Default)]
-pub(super) struct Unanswered(BTreeMap<u32, u32>);
+pub(super) struct Unanswered {
+    /// Number of executions since that is missing, by robot.
+    waited: BTreeMap<u32, u32>,
+    /// True if this component has asked about all robots that are out since it began.
+    has_asked: bool,
+}
 
 impl Unanswered {
     /// What to ask in this execution. Tells a person of what is not answered, and when that is over.
@@ -26,16 +31,17 @@ impl Unanswered {
         // Without a world nobody knows, and all luggage waits where it was to be collected.
         let has_world = knowledge.filter.area().is_some();
         let missing = if has_world { knowledge.open.unanswered() } else { BTreeMap::new() };
-        self.0.retain(|robot, _| {
+        self.waited.retain(|robot, _| {
             let lasts = missing.contains_key(robot);
             if !lasts {
                 context.alert_over(NO_ANSWER, *robot);
             }
             lasts
         });
-        let mut due = Vec::new();
+        let is_first = has_world && !std::mem::replace(&mut self.has_asked, has_world);
+        let mut due: Vec<Fault> = is_first.then(Fault::any).into_iter().collect();
         for (robot, fault) in missing {
-            let waited = self.0.entry(robot).or_insert(0);
+            let waited = self.waited.entry(robot).or_insert(0);
             *waited = waited.saturating_add(1);
             if waited.is_multiple_of(ASKS_AFTER) && (*waited / ASKS_AFTER).is_power_of_two() {
                 due.push(fault);
@@ -55,6 +61,6 @@ impl Unanswered {
 
     /// The first robot of which a person was told.
     pub(super) fn first(&self) -> Option<u32> {
-        self.0.iter().find(|(_, waited)| **waited >= ASKS_AFTER).map(|(robot, _)| *robot)
+        self.waited.iter().find(|(_, waited)| **waited >= ASKS_AFTER).map(|(robot, _)| *robot)
     }
 }

@@ -248,6 +248,16 @@ impl Fault {
         self.kind == FaultKind::Breakdown && self.robot == robot
     }
 
+    /// The question about all robots that are out, to a world.
+    pub const fn any() -> Fault {
+        Fault::gone(0)
+    }
+
+    /// True if this is the question about all robots that are out.
+    pub fn is_any(&self) -> bool {
+        *self == Fault::any()
+    }
+
     /// The robot is off the floor.
     pub const fn gone(robot: u32) -> Fault {
         Fault { robot, kind: FaultKind::Gone, since: None, block: None }
@@ -295,13 +305,13 @@ impl Validate for Fault {
 
 /// What robots that are gone, or whose component failed, left behind.
 ///
-/// Published by the world; read by the master of the environment and the environment.
+/// Published by the world; read by the master of the environment, the environment and zones.
 pub const REMOVAL: Topic<Removal> = Topic::event("REMOVALTOPIC").optional();
 
 /// Robots that are gone, or whose component failed, and of which no world has said yet what they left behind: the
-/// answer, or the news of the robot, was lost.
+/// answer, or the news of the robot, was lost. A master or a zone that begins asks about all of them, with robot 0.
 ///
-/// Published by the master of the environment; read by the world.
+/// Published by the master of the environment and zones; read by the world.
 pub const REMOVAL_ASKED: Topic<Fault> = Topic::event("REMOVALASKEDTOPIC").optional();
 
 /// A robot that is off the floor or has failed, and where its luggage is now.
@@ -309,6 +319,8 @@ pub const REMOVAL_ASKED: Topic<Fault> = Topic::event("REMOVALASKEDTOPIC").option
 pub struct Removal {
     /// Number of the robot.
     pub robot: u32,
+    /// What happened to it; none for one that has begun anew and works.
+    pub kind: Option<FaultKind>,
     /// Time from which on it is out: an answer about an earlier time says nothing of where it is now.
     pub since: Time,
     /// Block where it was; none in a world that does not know the robot.
@@ -317,6 +329,14 @@ pub struct Removal {
     pub luggage: Vec<u32>,
     /// Numbers of those that it carried and for which that block is the destination.
     pub delivered: Vec<u32>,
+}
+
+impl Removal {
+    /// What happened to the robot, with its block where the world knows that; `None` if it works.
+    pub fn fault(&self) -> Option<Fault> {
+        let Removal { robot, kind, since, block, .. } = *self;
+        Some(Fault { robot, kind: kind?, since: Some(since), block })
+    }
 }
 
 impl Validate for Removal {

@@ -34,7 +34,7 @@ use crate::console::Timestamp;
 use crate::hardware::{Hardware, Progress};
 use crate::messages::{
     ASSIGNMENT, COLLISION, DRAIN, Drain, EVENT_LUGGAGE, FAULT, GRANT, GRANT_REQUEST, LEASE, OUTAGE, Outage, POSITION,
-    PRESENCE, ROBOT_LIST, TERRITORY, VISIT,
+    PRESENCE, REMOVAL, ROBOT_LIST, TERRITORY, VISIT,
 };
 
 pub use battery::{Battery, Consumption};
@@ -88,7 +88,7 @@ const ASSISTANCE: &str = "assistance";
         )
     ),
     publishes(COLLISION, GRANT_REQUEST, PRESENCE, LEASE),
-    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, ASSIGNMENT, TERRITORY, GRANT),
+    subscribes(ROBOT_LIST, EVENT_LUGGAGE, VISIT, POSITION, FAULT, REMOVAL, ASSIGNMENT, TERRITORY, GRANT),
     reference("world": Hardware, optional),
     service("operator": RobotOperator),
     also("unibg.saoms.RobotImpl"),

@@ -6,7 +6,7 @@ use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
 use crate::grid::Block;
 use crate::messages::{
     ASSIGNMENT, Assignment, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, LuggageStage, POSITION,
-    Position, ROBOT_LIST, RobotList, VISIT, Visit, is_visit,
+    Position, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit, is_visit,
 };
 use crate::validation::Validate;
 
@@ -29,6 +29,7 @@ pub(super) struct Topics {
     visits: Subscription<Visit>,
     positions: Subscription<Position>,
     faults: Subscription<Fault>,
+    removals: Subscription<Removal>,
     assignments: Subscription<Assignment>,
     /// The block of the charger for which assignments are heard; `None` while it is for all.
     hears_for: Option<Block>,
@@ -44,22 +45,22 @@ impl Topics {
             visits: context.subscribe(&VISIT)?,
             positions: context.subscribe(&POSITION)?,
             faults: context.subscribe(&FAULT)?,
+            removals: context.subscribe(&REMOVAL)?,
             assignments: context.subscribe(&ASSIGNMENT)?,
             hears_for: None,
             hears_around: None,
         })
     }
 
-    /// Hears what is said around the robot alone, so that it does not grow with the fleet. A robot that is not on the
-    /// floor yet may be anywhere.
+    /// Hears what is said around the robot alone, so that it does not grow with the fleet; before it has entered the
+    /// floor, around where it starts.
     pub(super) fn hear_around(&mut self, robot: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let Block { x, y } = robot.block;
         let is_near = self.hears_around.is_some_and(|middle: Block| middle.distance(robot.block) <= SLACK);
         let is_home = self.hears_for == Some(robot.charge_block);
         if is_near && is_home
             || robot.policy != Policy::Safe
-            || !robot.hardware.has_entered()
-            || robot.routes.map().is_some_and(|map| map.size() <= HEARD)
+            || robot.routes.map().map_or(robot.hardware.is_wired(), |map| map.size() <= HEARD)
         {
             return Ok(());
         }
@@ -94,6 +95,7 @@ impl RobotKnowledge {
     /// # Errors
     /// The region in which positions are heard cannot be set.
     pub(super) fn hear(&mut self, topics: &mut Topics, context: &mut Context<'_>) -> Result<(), Failure> {
+        topics.hear_around(self, context)?;
         self.hear_robots(topics.robots, context);
         self.hear_visits(topics.visits, context);
         self.hear_luggage(topics.luggage, context);
@@ -102,7 +104,7 @@ impl RobotKnowledge {
             self.hear_assignments(topics.assignments, context);
             self.learn_obstacles();
         }
-        topics.hear_around(self, context)
+        Ok(())
     }
 
     /// Hears which robots are out without having said so: somebody took them off the floor, or their component failed.
@@ -110,6 +112,14 @@ impl RobotKnowledge {
     pub(super) fn hear_gone(&mut self, topics: &Topics, context: &mut Context<'_>) -> Option<Vec<u32>> {
         let began = *self.began.get_or_insert(context.due());
         let mut others = Vec::new();
+        for (header, removal) in context.receive(&topics.removals).with_headers() {
+            // A master passes on what a world says here, and may be out.
+            if let Some(fault) = removal.fault().filter(Fault::is_failure)
+                && self.accepts(removal, header, context)
+            {
+                self.hear_failure(&fault, header);
+            }
+        }
         for (header, fault) in context.receive(&topics.faults).with_headers() {
             if !fault.silences() || !self.accepts(fault, header, context) {
                 continue;

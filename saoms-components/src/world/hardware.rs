@@ -81,7 +81,8 @@ impl World {
             let (delivered, luggage) = self.put_down(context, robot, block);
             if !delivered.is_empty() || !luggage.is_empty() {
                 let since = context.now();
-                self.say_left(context, Removal { robot, since, block: Some(block), luggage, delivered })?;
+                let block = Some(block);
+                self.say_left(context, Removal { robot, kind: None, since, block, luggage, delivered })?;
             }
         }
         Ok(())

@@ -112,6 +112,11 @@ impl Stock {
         true
     }
 
+    /// True if a piece lies on the block.
+    pub(super) fn lies_at(&self, luggage: u32, block: Block) -> bool {
+        self.pieces.get(&luggage).is_some_and(|piece| piece.place == PiecePosition::At(block))
+    }
+
     /// Called after all messages of a period are handled: pieces that stay unknown for a whole period do not exist.
     pub(super) fn settle(&mut self) {
         for (_, settled) in &mut self.awaited {

@@ -152,7 +152,9 @@ impl Component for World {
             }
         }
         for (header, fault) in context.receive(&self.removals_asked).with_headers() {
-            if fault.silences() && self.validator.accepts(fault, header, None, context) {
+            if fault.is_any() {
+                self.say_all_again(context)?;
+            } else if fault.silences() && self.validator.accepts(fault, header, None, context) {
                 context.because(header.cause);
                 self.say_again(context, fault, fault.since.unwrap_or(header.sent))?;
                 context.because(Cause::default());

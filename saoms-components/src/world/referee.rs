@@ -360,6 +360,12 @@ impl Referee {
         body.is_some_and(|body| body.entered > since || if is_gone { body.gone } else { body.retired })
     }
 
+    /// True if a robot that is out since then is off the floor, or out of service where it stands.
+    pub(super) fn is_out(&self, robot: u32, is_gone: bool, since: Time) -> bool {
+        let body = self.bodies.get(&robot).filter(|body| body.entered <= since);
+        body.is_some_and(|body| if is_gone { body.gone } else { body.retired })
+    }
+
     pub(super) fn is_retired(&self, robot: u32) -> bool {
         self.bodies.get(&robot).is_some_and(|body| body.retired)
     }

@@ -27,7 +27,7 @@ impl World {
             }
             Err(_) => (None, Vec::new(), Vec::new()),
         };
-        self.say_left(context, Removal { robot, since, block, luggage, delivered })
+        self.say_left(context, Removal { robot, kind: Some(FaultKind::Gone), since, block, luggage, delivered })
     }
 
     /// A robot lets go of what it carries: what is at its destination there is delivered. Returns the numbers of these
@@ -45,7 +45,7 @@ impl World {
     /// The component of a robot failed, and lost what it knew: the robot is stopped where it is, and others can take
     /// over what it carries.
     pub(super) fn stop_failed(&mut self, context: &mut Context<'_>, fault: &Fault, since: Time) -> Result<(), Failure> {
-        let robot = fault.robot;
+        let (robot, kind) = (fault.robot, Some(fault.kind));
         let removal = match self.referee.fail(robot, since) {
             Ok(is_out) => {
                 let block = self.referee.block(robot)?;
@@ -56,10 +56,10 @@ impl World {
                 context
                     .effect(record!(stops_failed_robot: "robot {robot} has failed: it stays at {block}", robot, block));
                 warn!(context, "{fault}: it stays at {block}");
-                Removal { robot, since, block: Some(block), luggage, delivered }
+                Removal { robot, kind, since, block: Some(block), luggage, delivered }
             }
             // It is none of this world.
-            Err(_) => Removal { robot, since, ..Removal::default() },
+            Err(_) => Removal { robot, kind, since, ..Removal::default() },
         };
         self.say_left(context, removal)
     }
@@ -72,7 +72,7 @@ impl World {
 
     /// The master did not hear what a robot left, which has been out since then. The news of that may be lost, too.
     pub(super) fn say_again(&mut self, context: &mut Context<'_>, fault: &Fault, since: Time) -> Result<(), Failure> {
-        let (robot, is_gone) = (fault.robot, fault.kind == FaultKind::Gone);
+        let (robot, kind, is_gone) = (fault.robot, Some(fault.kind), fault.kind == FaultKind::Gone);
         if !self.referee.was_out(robot, is_gone, since) {
             return if is_gone {
                 self.take_away(context, fault, since)
@@ -82,8 +82,23 @@ impl World {
         }
         let removal = match self.left.get(&robot).filter(|left| is_gone || left.since >= since) {
             Some(left) => left.clone(),
-            None => Removal { robot, since, block: Some(self.referee.block(robot)?), ..Removal::default() },
+            None => Removal { robot, kind, since, block: Some(self.referee.block(robot)?), ..Removal::default() },
         };
         context.send(&self.removals, removal)
+    }
+
+    /// Says of all robots that are out what they left, of their luggage what still lies where they let go of it: who
+    /// begins while they are out has not heard of them.
+    pub(super) fn say_all_again(&self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for left in self.left.values() {
+            let Removal { robot, since, .. } = *left;
+            let (Some(kind), Some(block)) = (left.kind, left.block) else { continue };
+            if !self.referee.is_out(robot, kind == FaultKind::Gone, since) {
+                continue;
+            }
+            let luggage = left.luggage.iter().copied().filter(|luggage| self.stock.lies_at(*luggage, block)).collect();
+            context.send(&self.removals, Removal { luggage, ..left.clone() })?;
+        }
+        Ok(())
     }
 }

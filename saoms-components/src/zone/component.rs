@@ -10,14 +10,15 @@ use super::deadlock::StandingStill;
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger, Member};
 use super::maneuver::Maneuver;
+use super::memory::Record;
 use super::plan::Planned;
 use super::properties::ZoneProperties;
 use super::{memory, plan};
 use crate::grid::{Block, Map};
 use crate::hardware::HardwareReference;
 use crate::messages::{
-    ClearTerm, FAULT, Fault, GRANT, GRANT_REQUEST, Grant, GrantRequest, PRESENCE, Presence, Standing, TERRITORY,
-    Territory,
+    ClearTerm, FAULT, Fault, GRANT, GRANT_REQUEST, Grant, GrantRequest, PRESENCE, Presence, REMOVAL, REMOVAL_ASKED,
+    Removal, Standing, TERRITORY, Territory,
 };
 use crate::validation::MessageValidator;
 
@@ -68,6 +69,10 @@ pub struct Zone {
     presences: Subscription<Presence>,
     #[subscribes(FAULT)]
     faults: Subscription<Fault>,
+    #[subscribes(REMOVAL)]
+    removals: Subscription<Removal>,
+    #[publishes(REMOVAL_ASKED)]
+    removals_asked: Publisher<Fault>,
     #[publishes(GRANT)]
     grants: Publisher<Grant>,
     #[publishes(TERRITORY)]
@@ -115,6 +120,8 @@ impl Component for Zone {
             requests: Subscription::default(),
             presences: Subscription::default(),
             faults: Subscription::default(),
+            removals: Subscription::default(),
+            removals_asked: Publisher::default(),
             grants: Publisher::default(),
             territories: Publisher::default(),
         })
@@ -164,10 +171,15 @@ impl Zone {
         let term = u64::try_from(term.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
         let territory = self.properties.territory(term, &map).map_err(|finding| Failure::from(*finding))?;
         let ledger = match kept {
-            Some(mut ledger) if is_same(ledger.territory(), &territory) => {
+            Some(Record { mut ledger, first_heard }) if is_same(ledger.territory(), &territory) => {
                 // The robots of an earlier program have lost their memory with it: each has to say where it is first.
                 self.open = !context.kept_by_earlier_program();
-                if !self.open {
+                if self.open {
+                    self.spoke.extend(first_heard.into_iter().filter_map(|(robot, first)| {
+                        let incarnation = ledger.member(robot)?.request.incarnation;
+                        Some((robot, Spoken { incarnation, first, last: first }))
+                    }));
+                } else {
                     ledger.begin_term(territory.term);
                 }
                 ledger
@@ -179,6 +191,10 @@ impl Zone {
             }
         };
         context.send(&self.territories, ledger.territory().clone())?;
+        if context.is_wired(&self.hardware) {
+            // It may have begun after robots went out.
+            context.send(&self.removals_asked, Fault::any())?;
+        }
         let Territory { corner, width, height, .. } = *ledger.territory();
         if (map.width(), map.height()) != (width, height) {
             let columns = corner.x..=corner.x.saturating_add_unsigned(width - 1);
@@ -237,7 +253,7 @@ impl Zone {
         }
         // Before the messages of this execution leave.
         for robot in changed {
-            let (key, bytes) = memory::member(&state.ledger, robot);
+            let (key, bytes) = memory::member(&state.ledger, robot, self.first_heard(robot));
             context.keep(key, &bytes)?;
         }
         for grant in told.iter().filter_map(|robot| state.ledger.message(*robot)) {
@@ -312,8 +328,13 @@ impl Zone {
     /// world stopped them, or all where that is not known. Returns those whose record has changed.
     fn hear_gone(&mut self, state: &mut State, context: &mut Context<'_>) -> BTreeSet<u32> {
         let mut changed = BTreeSet::new();
-        let heard = context.receive(&self.faults).with_headers();
-        for (header, fault) in heard.filter(|(_, fault)| fault.silences() && fault.robot != 0) {
+        let faults = context.receive(&self.faults).with_headers();
+        let mut heard: Vec<(Time, Fault)> = faults.map(|(header, fault)| (header.sent, fault.clone())).collect();
+        // A master passes on what the world says here, and may be out.
+        let removals = context.receive(&self.removals).with_headers();
+        heard.extend(removals.filter_map(|(header, removal)| Some((header.sent, removal.fault()?))));
+        heard.retain(|(_, fault)| fault.silences() && fault.robot != 0);
+        for (sent, fault) in &heard {
             let spoken = self.spoke.get(&fault.robot);
             if fault.is_failure() {
                 // One that has begun anew since said what it holds.
@@ -328,7 +349,7 @@ impl Zone {
                 continue;
             }
             // A robot that began anew since then is back. Whether it did may be unknown when the event is said again.
-            let is_back = spoken.map(|spoken| spoken.first > fault.since.unwrap_or(header.sent));
+            let is_back = spoken.map(|spoken| spoken.first > fault.since.unwrap_or(*sent));
             if is_back.unwrap_or(fault.since.is_some()) {
                 continue;
             }
@@ -340,6 +361,11 @@ impl Zone {
             changed.insert(fault.robot);
         }
         changed
+    }
+
+    /// Time of the first request of a robot's newest incarnation.
+    fn first_heard(&self, robot: u32) -> Time {
+        self.spoke.get(&robot).map_or(Time::START, |spoken| spoken.first)
     }
 
     /// True if all robots of the fleet have said where they are. Else the zone asks them, and says for whom it waits.
@@ -358,7 +384,8 @@ impl Zone {
             let kept: Vec<u64> =
                 context.kept().into_keys().filter(|key| !memory::is_current(&state.ledger, *key)).collect();
             kept.into_iter().try_for_each(|key| context.keep(key, &[]))?;
-            let members = state.ledger.members().keys().map(|robot| memory::member(&state.ledger, *robot));
+            let members = state.ledger.members().keys();
+            let members = members.map(|robot| memory::member(&state.ledger, *robot, self.first_heard(*robot)));
             for (key, bytes) in std::iter::once(memory::territory(&state.ledger)).chain(members) {
                 context.keep(key, &bytes)?;
             }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use saoms_api::host::cdr;
-use saoms_api::{Failure, Message, Saved};
+use saoms_api::{Failure, Message, Saved, Time};
 
 use super::ledger::{Ledger, Member};
 use crate::messages::{GrantRequest, Step, Territory};
@@ -24,6 +24,16 @@ struct MemberMemory {
     request: GrantRequest,
     steps: Vec<Step>,
     granted: u64,
+    /// Time of the first request of this incarnation that the zone heard.
+    first: Time,
+}
+
+/// A record of grants that was kept.
+#[derive(Debug)]
+pub(super) struct Record {
+    pub(super) ledger: Ledger,
+    /// Time of the first request of each robot's newest incarnation.
+    pub(super) first_heard: BTreeMap<u32, Time>,
 }
 
 /// The bytes of the territory, of a zone that grants.
@@ -33,12 +43,13 @@ pub(super) fn territory(ledger: &Ledger) -> (u64, Vec<u8>) {
     (TERRITORY, Saved::of(&memory).bytes().to_vec())
 }
 
-/// The bytes of a robot; none for one that the zone does not know any more.
-pub(super) fn member(ledger: &Ledger, robot: u32) -> (u64, Vec<u8>) {
+/// The bytes of a robot, which began to speak at this time; none for one that the zone does not know any more.
+pub(super) fn member(ledger: &Ledger, robot: u32, first: Time) -> (u64, Vec<u8>) {
     let member = ledger.member(robot).map(|Member { request, steps, granted, .. }| MemberMemory {
         request: request.clone(),
         steps: steps.clone(),
         granted: *granted,
+        first,
     });
     (u64::from(robot), member.map_or_else(Vec::new, |member| cdr::encode(&member)))
 }
@@ -48,11 +59,11 @@ pub(super) fn is_current(ledger: &Ledger, key: u64) -> bool {
     key == TERRITORY || u32::try_from(key).is_ok_and(|robot| ledger.member(robot).is_some())
 }
 
-/// The record of a zone that granted; `None` if there is none.
+/// The record of a zone that granted, with the time at which each robot began to speak; `None` if there is none.
 ///
 /// # Errors
 /// The bytes are no record of this build.
-pub(super) fn record(kept: &BTreeMap<u64, &[u8]>) -> Result<Option<Ledger>, Failure> {
+pub(super) fn record(kept: &BTreeMap<u64, &[u8]>) -> Result<Option<Record>, Failure> {
     let Some(territory) = kept.get(&TERRITORY) else { return Ok(None) };
     let Some(TerritoryMemory { territory, form }) = Saved::from_bytes(territory.to_vec()).read()? else {
         return Ok(None);
@@ -63,11 +74,12 @@ pub(super) fn record(kept: &BTreeMap<u64, &[u8]>) -> Result<Option<Ledger>, Fail
             MemberMemory::SCHEMA
         )));
     }
-    let mut members = BTreeMap::new();
+    let (mut members, mut first_heard) = (BTreeMap::new(), BTreeMap::new());
     for (_, bytes) in kept.range(TERRITORY + 1..) {
-        let MemberMemory { request, steps, granted } = cdr::decode(bytes)
+        let MemberMemory { request, steps, granted, first } = cdr::decode(bytes)
             .map_err(|error| Failure::new(format!("what was kept of a robot cannot be read: {error}")))?;
+        first_heard.insert(request.robot, first);
         members.insert(request.robot, Member::new(request, steps, granted));
     }
-    Ok(Some(Ledger::with(territory, members)))
+    Ok(Some(Record { ledger: Ledger::with(territory, members), first_heard }))
 }

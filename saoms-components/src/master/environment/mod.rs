@@ -223,7 +223,7 @@ impl Component for MasterEnvironment {
         }
         for (header, removal) in context.receive(&self.removals).with_headers() {
             if self.knowledge.accepts(removal, header, context) {
-                self.knowledge.open.hear_removal(removal);
+                self.hear_removal(removal, header, context)?;
             }
         }
         self.hear_leases(context)?;
@@ -342,6 +342,18 @@ impl MasterEnvironment {
         if fault.validate(header.sender, validator, filter.area()).is_ok() {
             self.knowledge.take_away(fault, header);
         }
+    }
+
+    /// The world says what a robot left that is out. A master that began since has not heard that it is.
+    fn hear_removal(&mut self, removal: &Removal, header: Header, context: &mut Context<'_>) -> Result<(), Failure> {
+        if let Some(fault) = self.knowledge.open.missed(removal) {
+            self.knowledge.take_away(&fault, header);
+            if fault.kind == FaultKind::Gone && self.knowledge.speaks_for_all() {
+                context.send(&self.faults, fault)?;
+            }
+        }
+        self.knowledge.open.hear_removal(removal);
+        Ok(())
     }
 
     /// Tells the robots of those that failed, and requests the luggage of robots that are out again.

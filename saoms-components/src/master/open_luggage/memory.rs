@@ -5,7 +5,7 @@ use std::time::Duration;
 use saoms_api::{Field, Time};
 
 use super::outages::Failed;
-use super::{OpenLuggage, Piece};
+use super::{Active, OpenLuggage, Piece};
 use crate::gone::Gone;
 use crate::grid::Block;
 use crate::messages::{CriticalSituation, Removal, is_visit};
@@ -47,6 +47,7 @@ struct PieceMemory {
 struct ActiveMemory {
     robot: u32,
     period_us: u64,
+    said: Time,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -79,9 +80,10 @@ impl OpenLuggage {
             }
         };
         // Periods came as whole microseconds.
-        let active = |(robot, period): (&u32, &Duration)| ActiveMemory {
+        let active = |(robot, active): (&u32, &Active)| ActiveMemory {
             robot: *robot,
-            period_us: u64::try_from(period.as_micros()).unwrap_or(u64::MAX),
+            period_us: u64::try_from(active.period.as_micros()).unwrap_or(u64::MAX),
+            said: active.said,
         };
         let breaking = self.breaking.iter().map(|(&robot, &until)| BreakingMemory { robot, until });
         OpenMemory {
@@ -132,7 +134,10 @@ impl OpenLuggage {
             .filter(|piece| piece.waits && piece.asked.is_none())
             .map(|piece| (piece.since, piece.luggage));
         let waiting = waiting.collect();
-        let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
+        let active = memory.active.iter().map(|active| {
+            let &ActiveMemory { robot, period_us, said } = active;
+            (robot, Active { period: Duration::from_micros(period_us), said })
+        });
         OpenLuggage {
             pieces: memory.pieces.into_iter().map(piece).collect(),
             helps: memory.helps.into_iter().map(|help| (help.luggage, help)).collect(),

@@ -27,8 +27,8 @@ pub struct OpenLuggage {
     pieces: BTreeMap<u32, Piece>,
     /// Requests for help with a job that no robot has answered, by luggage.
     helps: BTreeMap<u32, CriticalSituation>,
-    /// Robots that report that they are active, with their period.
-    active: BTreeMap<u32, Duration>,
+    /// Robots that report that they are active.
+    active: BTreeMap<u32, Active>,
     /// Active robots that are told to break, with the time until which they can say so themselves.
     breaking: BTreeMap<u32, Time>,
     /// Active robots that are broken.
@@ -47,6 +47,15 @@ pub struct OpenLuggage {
     changed: bool,
     /// Luggage that waits and that no robot was asked to bring, oldest first.
     waiting: BTreeSet<(Time, u32)>,
+}
+
+/// A robot that reports that it is active.
+#[derive(Clone, Copy, Debug)]
+struct Active {
+    /// Period of its component.
+    period: Duration,
+    /// Time of its last report.
+    said: Time,
 }
 
 #[derive(Debug, Default)]
@@ -266,7 +275,7 @@ impl OpenLuggage {
 
     /// A robot is told to break. It has two executions to say so itself, before its luggage is given up.
     pub(super) fn break_down(&mut self, robot: u32, now: Time) {
-        let period = self.active.get(&robot).copied().unwrap_or_default();
+        let period = self.active.get(&robot).map_or(Duration::ZERO, |active| active.period);
         self.breaking.entry(robot).or_insert(now + period.saturating_mul(2));
     }
 
@@ -304,7 +313,8 @@ impl OpenLuggage {
                 }
             }
         }
-        let is_new = robot.active && { self.active.insert(robot.robot, Duration::from_micros(robot.period)).is_none() };
+        let active = Active { period: Duration::from_micros(robot.period), said: header.sent };
+        let is_new = robot.active && self.active.insert(robot.robot, active).is_none();
         self.changed |= is_new;
         if !robot.active {
             // A robot that reports itself again was repaired.
@@ -338,7 +348,8 @@ impl OpenLuggage {
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
                     // For who takes it away from the healer, it lies where the broken robot left it.
                     (piece.from, piece.taken, piece.asked) = (from, Some(situation.healer), None);
-                    piece.left_by = None;
+                    // A robot that is out said so before.
+                    piece.left_by = piece.taken.take_if(|healer| self.gone.is_out(*healer));
                     self.waiting.remove(&(piece.since, luggage));
                 }
             }
@@ -367,6 +378,8 @@ impl OpenLuggage {
                     // A robot that is out said so before.
                     piece.left_by = piece.taken.take_if(|robot| self.gone.is_out(*robot));
                     piece.asked = None;
+                    // A robot that did not find it where it was before asks the others to look there, too.
+                    piece.unheard |= piece.waits && piece.stops.is_empty() && response.from != piece.from;
                     let key = (piece.since, response.luggage);
                     if piece.waits { _ = self.waiting.insert(key) } else { _ = self.waiting.remove(&key) }
                 }

@@ -44,9 +44,17 @@ impl OpenLuggage {
         }
     }
 
+    /// The fault of a robot that the world knows, if this master has not heard of it: it began after that.
+    pub(in crate::master) fn missed(&self, removal: &Removal) -> Option<Fault> {
+        let fault = removal.fault().filter(|fault| fault.block.is_some())?;
+        let is_back = self.active.get(&removal.robot).is_some_and(|active| active.said > removal.since);
+        let is_known = self.gone.since(removal.robot).is_some_and(|since| since >= removal.since);
+        (!is_back && !is_known).then_some(Fault { block: None, ..fault })
+    }
+
     /// The world says what a robot left, and where.
     pub(in crate::master) fn hear_removal(&mut self, removal: &Removal) {
-        let Removal { robot, since, block, luggage, delivered } = removal;
+        let Removal { robot, since, block, luggage, delivered, .. } = removal;
         // The answer to a question that was asked again meanwhile, or about an earlier failure: the robot is elsewhere.
         let is_earlier = self.failed.get(robot).is_some_and(|failed| Some(*since) < failed.fault.since);
         if self.left.get(robot) == Some(removal) || is_earlier {

@@ -127,7 +127,7 @@ fn luggage_of_a_robot_that_is_gone_waits_again_where_it_lies() {
         since: at(5),
         block: Some(block(4)),
         luggage: vec![1],
-        delivered: Vec::new(),
+        ..Removal::default()
     });
     assert_eq!(again(&mut open, true), [(1, 1, 4)], "the broken robot asked for help with the other piece");
     assert_eq!(again(&mut open, true), []);

@@ -71,6 +71,22 @@ fn what_a_zone_hears_does_not_grow_with_the_site() {
     assert!(many <= few + 5 * 9, "a zone hears {few} messages in a site of 3 zones, and {many} in one of 12");
 }
 
+/// Robots of a site with zones enter the floor once a zone has answered: before that they hear around themselves, too.
+#[test]
+fn what_a_robot_hears_does_not_grow_with_the_site() {
+    let heard = |count: u32| {
+        let world = [("width", (6 * count).to_string()), ("height", "60".to_owned())];
+        let robots: String = (0..count).map(|number| robot(number + 1, 6 * number, 0)).collect();
+        let run =
+            site(&world, &zones(1, 6 * count), &robots, "at 1s luggage (1,1) to (3,1)").run(1, Duration::from_secs(9));
+        assert_eq!(delivered(&run), 1, "{count} robots: {}", run.log());
+        let robots = run.components.iter().filter(|one| one.name.starts_with("Robot"));
+        robots.map(|robot| robot.messages.received).max().unwrap_or(0)
+    };
+    let (few, many) = (heard(20), heard(80));
+    assert!(many <= few + 5, "a robot hears {few} messages among 20 robots, and {many} among 80");
+}
+
 /// Two ways lead from the first zone through the second one. The shorter one is closed by a robot that broke there: the
 /// first zone has to know it, since robots choose their way before the border.
 #[test]

@@ -7,6 +7,7 @@ mod entering;
 mod gone;
 mod out_of_reach;
 mod phase;
+mod unheard;
 mod words;
 
 use std::time::Duration;
