@@ -101,6 +101,7 @@ impl RobotKnowledge {
     /// reached.
     pub(crate) fn retire(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let Reply::Answer(block) = self.hardware.retire(context, self.number)? else { return Ok(false) };
+        self.end_open_action(context);
         self.note_running();
         self.stays_at(block);
         Ok(true)

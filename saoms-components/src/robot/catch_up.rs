@@ -43,8 +43,7 @@ impl RobotKnowledge {
                 self.begun = Cause::default();
                 self.next = if action.kind == ActionKind::Move { action.block } else { self.block };
             }
-            self.hardware.caught_up(Some(action));
-            self.note_running();
+            self.caught_up(context, Some(action));
             return Ok(true);
         }
         let arrived = running.filter(|action| action.kind == ActionKind::Move && progress == Progress::Done);
@@ -54,8 +53,7 @@ impl RobotKnowledge {
         };
         // That tells the hardware that the robot has not begun anew.
         let Reply::Answer(_) = self.hardware.ask(context, self.number)? else { return Ok(false) };
-        self.hardware.caught_up(None);
-        self.note_running();
+        self.caught_up(context, None);
         if let Some(action) = running {
             let arrived = action.kind == ActionKind::Move && block == action.block;
             self.take_in_late(context, action, if arrived { Progress::Done } else { progress })?;
@@ -80,9 +78,24 @@ impl RobotKnowledge {
         })
     }
 
-    /// Asks a person what became of an action that an earlier program began.
+    fn caught_up(&mut self, context: &mut Context<'_>, running: Option<Action>) {
+        self.end_open_action(context);
+        self.hardware.caught_up(running);
+        self.note_running();
+    }
+
+    /// Ends the alert about an action of which nobody knew, also that of an instance before, or of an earlier program.
+    pub(super) fn end_open_action(&mut self, context: &mut Context<'_>) {
+        if self.hardware.is_recalled() {
+            self.hardware.asks_no_more();
+            context.alert_over(OPEN_ACTION, "");
+        }
+    }
+
+    /// Asks a person what became of an action that an earlier program began. What was said counts until the robot has
+    /// caught up, which hardware that is busy may delay.
     fn ask_a_person(&mut self, context: &mut Context<'_>) -> Reply<Progress> {
-        let Some(progress) = self.hardware.told.take() else {
+        let Some(progress) = self.hardware.told else {
             if !std::mem::replace(&mut self.hardware.asks_a_person, true) {
                 let what = self.hardware.running().map(|action| action.to_string()).unwrap_or_default();
                 let name = context.name().to_owned();
@@ -97,8 +110,6 @@ impl RobotKnowledge {
             }
             return Reply::Later;
         };
-        self.hardware.asks_a_person = false;
-        context.alert_over(OPEN_ACTION, "");
         Reply::Answer(progress)
     }
 

@@ -165,6 +165,7 @@ impl RobotKnowledge {
         context.effect(record!(leaves_floor: "is gone from {block}, and stops", block = self.block));
         warn!(context, "is gone from {}: it stops until it is started again", self.block);
         context.alert_over(ASSISTANCE, "");
+        self.end_open_action(context);
         let before = self.noted();
         self.drop_job();
         self.note_changes(context, before);

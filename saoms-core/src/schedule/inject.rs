@@ -27,7 +27,7 @@ use crate::network;
 use crate::observe::{Notification, Occurrence, SentMessage};
 
 /// The number of the sender of messages from outside.
-pub(super) const OUTSIDE: u32 = u32::MAX;
+pub(in crate::schedule) const OUTSIDE: u32 = u32::MAX;
 /// The name of that sender, which no component can have.
 pub(super) const OUTSIDE_NAME: &str = network::FROM_OUTSIDE;
 
@@ -392,7 +392,7 @@ impl Engine {
 
     /// Keeps the run from ending for want of work until the effects of an event have reached all components.
     #[cold]
-    pub(super) fn settle(&mut self, now: u64) {
+    pub(in crate::schedule) fn settle(&mut self, now: u64) {
         let settled = now.saturating_add(self.longest_period().saturating_mul(SETTLING));
         self.injections.add(settled, Due::Settled);
         self.look_at = self.look_at.min(settled);

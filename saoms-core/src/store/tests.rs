@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 use super::group;
 use super::log::{Log, LogFile, ReplaceError, read};
-use super::thread::Writer;
+use super::thread::{LaterChanges, Writer};
 use super::{Batch, Change, Contents, Store, StoreEvents, StoreQueue};
 
 /// A change from text: `A 1 bytes`, or `A 1` for a removal.
@@ -290,6 +290,32 @@ fn all_that_waits_is_committed_together_and_nothing_after_a_failure() {
     let (told, shown, _) = run(TestDisk { space: Some(50), ..TestDisk::default() }, &kept);
     let full = "is almost full; is full; the state folder cannot be written: no storage space; what is kept from now on would be lost";
     assert_eq!((told.as_str(), shown.as_str()), (full, ""));
+}
+
+/// Keeps this under one key, unless the store has it.
+#[derive(Debug)]
+struct Wanted(&'static str);
+
+impl LaterChanges for Wanted {
+    fn add_to(&self, changes: &mut Vec<Change>, known: &Contents) {
+        let change = change(&format!("A 1 {}", self.0));
+        let bytes = known.of("A").and_then(|entries| entries.get(&1));
+        if bytes.map(|bytes| &bytes[..]) != change.bytes.as_deref() {
+            changes.push(change);
+        }
+    }
+}
+
+#[test]
+fn changes_that_are_made_of_what_the_store_has_see_those_before_them() {
+    let file = TestFile::default();
+    let (queue, told) = (StoreQueue::default(), Told::default());
+    for (number, wanted) in (1..).zip(["one", "two", "one"]) {
+        queue.put(Batch { index: 0, number, changes: Vec::new(), later: Some(Box::new(Wanted(wanted))) });
+    }
+    queue.close();
+    Writer { log: file.clone().log(), queue: &queue, events: &told, told: None }.write();
+    assert_eq!(shown(&read(&file.0.lock().unwrap().bytes).contents), "A 1 one");
 }
 
 #[test]

@@ -238,12 +238,15 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
     }
 }
 
-/// Takes the batches that fit into one group, at least one.
+/// Takes the batches that fit into one group, at least one. Changes that are made by what the store has end the group:
+/// they are made before it is written.
 fn take_group(batches: &mut Vec<Batch>) -> Vec<Batch> {
-    let mut bytes = 0;
+    let (mut bytes, mut is_over) = (0, false);
     let fits = |batch: &Batch| {
         bytes += size(batch) + batch.changes.len() * 16;
-        bytes <= group::MOST_BYTES
+        let fits = bytes <= group::MOST_BYTES && !is_over;
+        is_over |= batch.later.is_some();
+        fits
     };
     let count = batches.iter().map(fits).take_while(|fits| *fits).count().max(1);
     batches.drain(..count).collect()

@@ -300,6 +300,31 @@ fn operators_need_not_say_again_what_they_said() {
     let changed = fleet.replace("T teller", "T teller mood=sad");
     let (_, told) = run(&changed, real(30), folder.path(), |_| {});
     assert!(behind(&told, "T: has said ").ends_with(", sad"), "{told}");
+    // What is set then lasts, and what was set before that is forgotten.
+    run(&changed, real(10_000), folder.path(), |handle| {
+        let (component, property, value) = ("T".to_owned(), "mood".to_owned(), "merry".to_owned());
+        let set = Order::Set { component, property, value };
+        handle.order(set, None).unwrap().wait(Duration::from_secs(5)).unwrap();
+        handle.stop();
+    });
+    let (_, told) = run(&changed, real(30), folder.path(), |_| {});
+    assert!(behind(&told, "T: has said ").ends_with(", merry"), "{told}");
+    let (_, told) = run(&fleet, real(30), folder.path(), |_| {});
+    assert!(behind(&told, "T: has said ").ends_with(", "), "{told}");
+}
+
+#[test]
+fn a_state_that_came_from_outside_is_there_for_who_begins_later() {
+    let folder = tempfile::tempdir().unwrap();
+    run(FLEET, real(10_000), folder.path(), |handle| {
+        let (topic, content) = ("OWN".to_owned(), InjectedContent::Fields(json!({"value": 9})));
+        handle.inject(Injection { topic, content, at: None, text: "a value".to_owned() }).unwrap();
+        handle.commit(Duration::from_secs(5)).unwrap();
+        sleep(Duration::from_millis(50));
+        handle.stop();
+    });
+    let (_, told) = run("N hearer period=3", real(40), folder.path(), |_| {});
+    assert!(told.contains("N: has heard up to 0, own 9"), "{told}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Faults from a file (`--faults`): lines of a scenario, which are read and judged before anything starts.
 
 use std::fs;
-use std::path::Path;
+use std::path::{self, Path};
 
 use saoms_api::event::EventCall;
 use saoms_api::event::fault::{FaultCall, FaultSubjects};
@@ -84,8 +84,7 @@ impl Known {
 
     /// Judges what a line says of the fleet, whatever is drawn of its ranges.
     fn judge_line(&self, text: &str, first: &PlannedEvent) -> Result<(), LineFault> {
-        let is_fault = first.message.content == EventContent::Raised && FaultCall::is_one(&first.message.text);
-        let mut languages = EventLanguage::linked().filter(|one| is_fault || one.topic.name == first.topic);
+        let mut languages = EventLanguage::linked().filter(|one| first.is_fault() || one.topic.name == first.topic);
         let events = self.takers.events();
         languages.try_for_each(|one| seen(&self.assembly, &first.site, |fleet| (one.judge)(fleet, events, text)))
     }
@@ -214,14 +213,27 @@ fn placed(line: &str, planned: &[PlannedEvent], fault: LineFault) -> LineFault {
     }
 }
 
-/// Puts events into a fleet that has just started, but for those whose time came before that from which it goes on.
-pub(in crate::command) fn play_all(events: Vec<PlannedEvent>, handle: &Handle) {
+/// Puts the events of a file into a fleet that has just started. One that goes on from a state folder has those that
+/// are no faults in its memory: they are not played again. Faults begin again, but for those whose time has passed.
+pub(super) fn play_all(path: &Path, events: Vec<PlannedEvent>, handle: &Handle) {
     let recalled = handle.recalled();
-    for event in events.into_iter().filter(|event| recalled.is_none_or(|recalled| event.at() > recalled)) {
+    let counter = format!("faults {}", path::absolute(path).unwrap_or_default().display());
+    let taken = handle.counter(&counter);
+    let mut number = 0;
+    let _together = handle.together();
+    for event in events {
+        let is_known = !event.is_fault() && {
+            number += 1;
+            number <= taken
+        };
+        if is_known || recalled.is_some_and(|recalled| event.at() <= recalled) {
+            continue;
+        }
         if let Err(why) = event.play(handle) {
             handle.note(Level::Error, why);
         }
     }
+    handle.set_counter(&counter, number.max(taken));
 }
 
 /// Reports what is wrong with a script.
@@ -233,6 +245,11 @@ pub(in crate::command) fn report_wrong(wrong: &[String]) {
 }
 
 impl PlannedEvent {
+    /// True if it is a fault, which ends with the program.
+    fn is_fault(&self) -> bool {
+        self.message.content == EventContent::Raised && FaultCall::is_one(&self.message.text)
+    }
+
     /// Its time.
     fn at(&self) -> Time {
         self.message.at.unwrap_or(Time::START)

@@ -60,6 +60,10 @@ impl Dice {
 
 /// Starts the program. What it goes on from, and what it told, stay in the folder, for a look after a failure.
 fn start(folder: &Path) -> Program {
+    start_with(folder, &[])
+}
+
+fn start_with(folder: &Path, more: &[&str]) -> Program {
     let _ = fs::remove_file(folder.join("socket"));
     let (state, before) = (folder.join("state"), folder.join("before"));
     fs::create_dir_all(&before).unwrap();
@@ -67,7 +71,8 @@ fn start(folder: &Path) -> Program {
         fs::copy(state.join("store.log"), before.join("store.log")).unwrap();
     }
     let told = fs::File::create(folder.join("told")).unwrap();
-    let mut run = command(&["run", "f.composite", "--state", "state", "--stay", "--control", "socket"]);
+    let usual = ["run", "f.composite", "--state", "state", "--stay", "--control", "socket"];
+    let mut run = command(&[&usual[..], more].concat());
     Program(run.current_dir(folder).stdout(told.try_clone().unwrap()).stderr(told).spawn().unwrap())
 }
 
@@ -194,4 +199,27 @@ fn what_was_acknowledged_calls_nobody_again() {
         assert_eq!(of(&after), of(&before));
         assert!(after.iter().all(|alert| alert["acknowledged"]["by"] == "anna"), "{after:?}");
     }
+}
+
+#[test]
+fn events_among_the_faults_happen_once() {
+    let folder = empty_folder("memory-faults");
+    let fleet = crossing().replace("at 0.1s 80 times luggage random to random", "at 0.1s luggage (1,1) to (2,2)");
+    fs::write(folder.join("f.composite"), fleet).unwrap();
+    fs::write(folder.join("faults"), "at 0s lose 1 % on POSTOPIC\nat 4s luggage (3,3) to (4,4)\n").unwrap();
+    let socket = folder.join("socket");
+    for _ in 0..2 {
+        let mut program = start_with(&folder, &["--faults", "faults"]);
+        assert_eq!(wait_for_pieces(&mut program, &socket, 1).0, 1, "killed before the event");
+        // Behind the next moment that is kept.
+        sleep(Duration::from_millis(600));
+    }
+    // Two events with the number of one piece are one piece: the journal says how often it came.
+    let arguments = ["run", "f.composite", "--state", "state", "--control", "none", "--faults", "faults"];
+    let output = saoms_in(&folder, &[&arguments[..], &["--journal", "journal"]].concat());
+    let journal = fs::read_to_string(folder.join("journal")).unwrap();
+    let is_event = |line: &&str| line.contains("\"(outside)\"") && line.contains("luggage (3,3) to (4,4)");
+    assert_eq!(journal.lines().filter(is_event).count(), 1, "{}", text(&output));
+    let mut program = start_with(&folder, &["--faults", "faults"]);
+    assert_eq!(wait_for_pieces(&mut program, &socket, 2).0, 2, "after its time");
 }

@@ -1,5 +1,7 @@
 mod gauge;
 mod patience;
+#[cfg(test)]
+mod tests;
 
 use saoms_api::{CallError, Context, Failure, Field};
 
@@ -22,9 +24,10 @@ pub(crate) struct HardwareClient {
     retired: bool,
     /// True if the robot goes on after a failure, and does not know yet what the hardware did meanwhile.
     catching_up: bool,
-    /// True if it does so in another program than that which began the running action.
+    /// True if it does so in another program than that which began the running action. It stays so if the robot fails
+    /// meanwhile: only who has caught up knows what became of that action.
     is_recalled: bool,
-    /// True if a person was asked what became of that, and what was said.
+    /// True if this instance has asked a person what became of that, and what a person said.
     pub(crate) asks_a_person: bool,
     pub(crate) told: Option<Progress>,
     running: Option<Action>,
@@ -38,6 +41,8 @@ pub(crate) struct HardwareMemory {
     entered: bool,
     retired: bool,
     running: Option<Action>,
+    is_recalled: bool,
+    told: Option<Progress>,
     measures: bool,
 }
 
@@ -58,8 +63,8 @@ impl HardwareClient {
     }
 
     pub(crate) fn memory(&self) -> HardwareMemory {
-        let HardwareClient { entered, retired, running, .. } = *self;
-        HardwareMemory { entered, retired, running, measures: self.gauge.measures() }
+        let HardwareClient { entered, retired, running, is_recalled, told, .. } = *self;
+        HardwareMemory { entered, retired, running, is_recalled, told, measures: self.gauge.measures() }
     }
 
     /// Goes on with hardware that did not stop meanwhile.
@@ -68,6 +73,8 @@ impl HardwareClient {
         self.gauge = Gauge::of(memory.measures);
         self.entered = memory.entered;
         self.catching_up = self.wired && memory.entered && !memory.retired;
+        self.is_recalled = self.catching_up && (self.is_recalled || memory.is_recalled);
+        self.told = memory.told.filter(|_| self.is_recalled);
     }
 
     /// True if the robot goes on after a failure, and does not know yet what the hardware did meanwhile.
@@ -75,9 +82,20 @@ impl HardwareClient {
         self.catching_up
     }
 
+    /// True as long as the robot does not know what became of the action that an earlier program began.
+    pub(crate) fn is_recalled(&self) -> bool {
+        self.is_recalled
+    }
+
     /// The robot knows what the hardware did meanwhile, and what it does now.
     pub(crate) fn caught_up(&mut self, running: Option<Action>) {
         (self.catching_up, self.is_recalled, self.running) = (false, false, running);
+        self.asks_no_more();
+    }
+
+    /// What a person could say is not needed any more.
+    pub(crate) fn asks_no_more(&mut self) {
+        (self.asks_a_person, self.told) = (false, None);
     }
 
     /// What became of the action that an earlier program began; the outer `None` where there is none, the inner one

@@ -16,7 +16,6 @@ use std::sync::Arc;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 
 use self::transaction::Change;
-use super::engine::Engine;
 use super::shared::Shared;
 use crate::assemble::{ChangePlan, Replacement};
 use crate::report::PartOfFleet;
@@ -46,8 +45,11 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, C
         let mut engine = shared.lock();
         engine.networks.elsewhere.know(part, wanted.elsewhere);
         engine.open_topics_of_others();
-        let recalled = |engine: &Engine, spec| engine.still_stopped(engine.with_recalled_values(spec));
-        wanted.components.into_iter().map(|spec| Some(Arc::new(recalled(&engine, spec)))).collect()
+        let mut recalled = |spec| {
+            let spec = engine.with_recalled_values(spec);
+            engine.still_stopped(spec)
+        };
+        wanted.components.into_iter().map(|spec| Some(Arc::new(recalled(spec)))).collect()
     };
     let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));
     Change::new(shared).make(&plan, wanted)

@@ -118,6 +118,7 @@ fn task(shared: &Shared, caller: &Part, provider: u32, call: &mut dyn ServiceCal
         drop(engine);
         return call.reply(&cdr::encode(&scheduled));
     };
+    engine.note_caller(caller.index);
     engine.request(provider, request, now);
     shared.release(engine);
     call.reply(&cdr::encode(&()))

@@ -204,6 +204,7 @@ impl Host for ComponentHost<'_> {
         }
         if event == STOP {
             let mut engine = self.shared.lock();
+            engine.note_caller(self.part.index);
             engine.request(self.part.index, Request::Unschedule, self.part.now);
             self.shared.release(engine);
             return Ok(());

@@ -207,7 +207,7 @@ impl Body {
     }
 
     /// Saves what changed since the last execution, so that it outlives the program.
-    pub(super) fn save_for_later(&mut self) -> Result<(), Failure> {
+    pub(in crate::schedule) fn save_for_later(&mut self) -> Result<(), Failure> {
         if self.part.lasting.touched { self.save() } else { Ok(()) }
     }
 
@@ -215,7 +215,8 @@ impl Body {
     /// begins saves what it begins with.
     pub(super) fn go_on(&mut self) -> Result<(), Failure> {
         let lasting = &mut self.part.lasting;
-        (lasting.goes_on, lasting.is_recalled) = (false, false);
+        let was_recalled = std::mem::replace(&mut lasting.is_recalled, false);
+        lasting.goes_on = false;
         let Some(instance) = &mut self.instance else { return Ok(()) };
         let Some(saved) = lasting.saved.take().filter(|saved| !saved.is_nothing()) else {
             if lasting.is_saved() && self.save().is_err() {
@@ -227,6 +228,8 @@ impl Body {
         let restored = contained(|| instance.restore(&saved)).and_then(|restored| restored);
         restored.map_err(|failure| Failure::new(format!("could not continue with its saved state: {failure}")))?;
         (lasting.saved, lasting.continued) = (Some(saved), true);
+        // It may note that the state is of an earlier program, which the next instance is to know, too.
+        lasting.touched = was_recalled && lasting.is_saved();
         lasting.counted.clear();
         Ok(())
     }

@@ -45,7 +45,9 @@ pub(super) fn wait(shared: &Shared, patience: Duration) -> Result<(), NotCommitt
         if let Some(failure) = queue.failure() {
             break Err(NotCommitted::Failed(failure));
         }
-        if engine.memory.is_committed(cut) || engine.phase == RunPhase::Ended {
+        // After the last cut nothing more happens.
+        let is_over = engine.phase == RunPhase::Ended && !engine.memory.has_uncommitted();
+        if engine.memory.is_committed(cut) || is_over {
             break Ok(());
         }
         let left = until.saturating_duration_since(Instant::now());

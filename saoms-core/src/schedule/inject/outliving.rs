@@ -31,7 +31,15 @@ impl Engine {
             };
             Some(InputForm { at: *at, text, is_order, is_event, messages })
         };
-        InputsForm { inputs: self.injections.waiting.iter().filter_map(input).collect() }
+        // They are due, and wait for code that runs.
+        let orders = self.orders.accepted().map(|order| InputForm {
+            at: 0,
+            text: order.line(),
+            is_order: true,
+            is_event: false,
+            messages: Vec::new(),
+        });
+        InputsForm { inputs: orders.chain(self.injections.waiting.iter().filter_map(input)).collect() }
     }
 
     /// Lets what came from outside in an earlier program take effect at its time.

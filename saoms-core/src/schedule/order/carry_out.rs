@@ -42,6 +42,16 @@ pub(crate) struct PendingOrders {
     waiting: VecDeque<(u32, Pending)>,
 }
 
+impl PendingOrders {
+    /// The orders that were answered when they were accepted: whoever gave them does not give them again.
+    pub(in crate::schedule) fn accepted(&self) -> impl Iterator<Item = &PendingOrder> {
+        self.waiting.iter().filter_map(|(_, pending)| match pending {
+            Pending::Order(order) if order.answering.is_none() && order.part_of.is_none() => Some(&**order),
+            _ => None,
+        })
+    }
+}
+
 /// What waits for a component.
 #[derive(Debug)]
 enum Pending {
@@ -174,6 +184,9 @@ impl Engine {
         };
         let components = components.map_err(OrderError::Component)?;
         let cause = self.record_outside(when, OUTSIDE_NAME, order.to_string());
+        if self.memory.is_on() {
+            self.want_cut(when);
+        }
         if is_stopped {
             let begun = |index: &u32| self.slots[*index as usize].is_stopped();
             let new: Vec<u32> = components.iter().copied().filter(|index| !begun(index)).collect();
@@ -391,7 +404,9 @@ impl Engine {
         };
         // It may have another value of a property.
         slot.spec = Arc::clone(&body.part.spec);
-        body.part.lasting.touch();
+        if !body.part.lasting.saves_at_once {
+            body.part.lasting.touch();
+        }
         if let Some(set) = set {
             self.note_set(index, set, now);
         }
@@ -444,6 +459,11 @@ impl Body {
         let refused = |failure| SetError::Refused { component: self.part.name.to_string(), failure };
         updated.map_err(refused)?;
         self.part.spec = Arc::new(changed);
+        if self.part.lasting.saves_at_once {
+            self.part.lasting.touch();
+            // What it cannot save now, it saves after the next execution, or fails then.
+            let _ = self.save_for_later();
+        }
         Ok(Value::Null)
     }
 

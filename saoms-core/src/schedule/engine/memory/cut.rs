@@ -18,6 +18,7 @@ use crate::bus::TopicId;
 use crate::hash::{fold, text_hash};
 use crate::report::{PartOfReport, Sections};
 use crate::schedule::engine::slot::SlotState;
+use crate::schedule::inject::OUTSIDE;
 use crate::store::{Batch, Change, Contents, LaterChanges};
 
 /// A cut, as it is handed over to the thread of the store.
@@ -181,8 +182,11 @@ impl Engine {
         states
     }
 
-    /// A message with names; `None` if no component of this program sent it.
+    /// A message with names; `None` if a component of another program sent it, which says it again.
     fn sent(&self, message: SharedMessage) -> Option<Sent> {
+        if message.header().sender == OUTSIDE {
+            return Some(self.sent_or_outside(&message));
+        }
         let sender = Arc::clone(&self.slots.get(message.header().sender as usize)?.name);
         let to = message.to().and_then(|to| self.name_of(to));
         Some(Sent { sender, to, message })

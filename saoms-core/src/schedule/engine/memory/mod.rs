@@ -330,6 +330,8 @@ impl Engine {
     pub(crate) fn hand_over(&mut self, index: u32, number: u64, changes: Vec<Change>, now: u64) {
         let Some(queue) = self.memory.queue.clone() else { return };
         if !self.memory.takes(self.phase) {
+            // What components do in their shutdown is no part of what the fleet goes on from.
+            let changes = if self.memory.ending == Ending::Made { Vec::new() } else { changes };
             return queue.put(Batch { index, number, changes, later: None });
         }
         self.memory.announced += queue.announce(&changes);
@@ -345,6 +347,11 @@ impl Engine {
         if self.memory.takes(self.phase) {
             self.memory.outgoing.push((network, from_run));
             self.want_cut(now);
+        } else if self.memory.is_on()
+            && self.memory.ending == Ending::Made
+            && matches!(from_run, FromRun::Message { .. })
+        {
+            // Others would act on it, and the fleet goes on from before that, as after a crash.
         } else {
             self.networks.waiting.push((network, from_run));
         }
@@ -387,7 +394,8 @@ impl Engine {
         let written = self.memory.writing.iter().map(|one| one.outgoing.len()).sum::<usize>();
         let unsent = self.memory.outgoing.len() + written;
         self.release_held_back(0);
-        self.memory = Memory { committed: self.memory.committed, made: self.memory.made, ..Memory::new() };
+        let Memory { committed, made, guards, .. } = self.memory;
+        self.memory = Memory { committed, made, guards, ..Memory::new() };
         self.has_returned |= self.awaited > 0;
         unsent as u64
     }

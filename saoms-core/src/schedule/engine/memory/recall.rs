@@ -171,14 +171,14 @@ impl Engine {
 
     /// The specification of a component with the values that operators have set, unless the composite has other ones
     /// than then.
-    pub(in crate::schedule) fn with_recalled_values(&self, mut spec: ComponentSpec) -> ComponentSpec {
-        let known = self.memory.recalled.as_ref().and_then(|recalled| recalled.components.get(&spec.path));
+    pub(in crate::schedule) fn with_recalled_values(&mut self, mut spec: ComponentSpec) -> ComponentSpec {
+        let known = self.memory.recalled.as_mut().and_then(|recalled| recalled.components.get_mut(&spec.path));
         let Some(known) = known.filter(|known| known.form.class == spec.class.name()) else { return spec };
         let stopped = SetForm { property: STOPPED.to_owned(), value: "true".to_owned(), instead_of: 0 };
         let stopped = Some(&stopped).filter(|_| known.form.is_stopped && hears_stops(&spec));
-        let is_unchanged = |set: &&SetForm| value_hash(&spec, &set.property) == set.instead_of;
-        let set: Vec<&SetForm> = known.form.set.iter().filter(is_unchanged).collect();
-        for set in set.into_iter().chain(stopped) {
+        // What was set in place of another value than that of the composite is over.
+        known.form.set.retain(|set| value_hash(&spec, &set.property) == set.instead_of);
+        for set in known.form.set.iter().chain(stopped) {
             if let Ok(changed) = change::changed(&spec, &set.property, &set.value) {
                 spec = changed;
             }
@@ -227,7 +227,10 @@ impl Engine {
     /// Lets a component begin anew whose state of an earlier program cannot be restored. False if it did not go on
     /// from one.
     pub(in crate::schedule) fn begin_anew(&mut self, number: u32, why: &str, now: u64) -> bool {
-        if !std::mem::take(&mut self.slots[number as usize].memory.is_recalled) {
+        let slot = &mut self.slots[number as usize];
+        let has_state = slot.body.as_ref().is_some_and(|body| body.part.lasting.saved().is_some());
+        // One that fails before it restores its state is to find it again.
+        if has_state || !std::mem::take(&mut slot.memory.is_recalled) {
             return false;
         }
         if let Some(mut body) = self.slots[number as usize].body.take() {
@@ -337,6 +340,21 @@ impl Engine {
             } else if std::mem::take(&mut slot.memory.begins_anew) {
                 self.tell_loss(index, true, now);
             }
+        }
+        let forgotten = recalled.events.unread.iter().filter(|unread| {
+            let number = self.numbers.get(unread.component.as_str());
+            !number.is_some_and(|number| self.slots[*number as usize].is_member())
+        });
+        let forgotten: Vec<(String, usize, String)> =
+            forgotten.map(|unread| (unread.component.clone(), unread.messages.len(), unread.topic.clone())).collect();
+        for (component, count, topic) in forgotten {
+            let text = format!(
+                "{count} messages on `{topic}` waited for `{component}`, which the fleet has no more: they are dropped"
+            );
+            self.note(now, Occurrence::Note { level: Level::Warning, text });
+        }
+        if !recalled.events.unread.is_empty() || !recalled.events.held.is_empty() {
+            self.settle(now);
         }
         for held in &recalled.events.held {
             let Some(topic) = self.bus.find(&held.topic) else { continue };
