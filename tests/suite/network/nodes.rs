@@ -2,6 +2,8 @@
 
 use std::fs;
 use std::sync::Arc;
+use std::thread::sleep;
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -176,6 +178,8 @@ fn a_robot_whose_program_was_killed_is_gone_and_comes_back_in_a_new_one() {
     let others = ["control", "traffic"].map(|node| start(&programs, "fleet.composite", node, &[]));
     let first = start(&programs, "fleet.composite", "gate", &[]);
     programs.until(&first, "deposited luggage 1 at");
+    // The others are to hear of it.
+    sleep(Duration::from_millis(500));
     first.kill();
     programs.until(&others[0], "robot 1 is gone");
     let second = start(&programs, "fleet.composite", "gate", &[]);

@@ -28,7 +28,10 @@ fn ends_are_components_and_their_parts() {
     assert_eq!(ends(&format!("{ROBOT}</component><wire source=\"R/|\" target=\"\"/>")), ["world"]);
     assert_eq!(ends(&format!("{ROBOT}</component><wire source=\"R/world\" target=\"|\"/>"))[0], "World");
     assert_eq!(ends(&format!("{ROBOT}</component><reference name=\"r\" promote=\"R/|\"/>")), ["world"]);
-    assert_eq!(ends(&format!("{ROBOT}</component><service name=\"s\" promote=\"R/|\"/>")), ["TaskInterface"]);
+    assert_eq!(
+        ends(&format!("{ROBOT}</component><service name=\"s\" promote=\"R/|\"/>")),
+        ["operator", "TaskInterface"]
+    );
     // The word of a list at the cursor is replaced, not the others.
     let list = format!("{WORLD}{ROBOT}<reference name=\"world\" target=\"World W|orl R\"/></component>");
     let expected = list.replace("W|orl", "World");

@@ -105,7 +105,7 @@ fn values_of_attributes_are_those_of_their_kind() {
     // The one at the cursor can be written again.
     assert_eq!(names("<property name=\"per|iod\"/>")[1], "period");
     assert_eq!(names("<reference name=\"|\""), ["world"]);
-    assert_eq!(names("<service name=\"|\""), ["TaskInterface"]);
+    assert_eq!(names("<service name=\"|\""), ["operator", "TaskInterface"]);
     assert_eq!(names("<reference name=\"world\"><interface.java interface=\"|")[0], "saoms.Hardware");
     let levels = proposed(&composite("<s:severity code=\"S4001\" level=\"|\"/>"));
     assert!(levels.contains(&"warning".to_owned()), "{levels:?}");
