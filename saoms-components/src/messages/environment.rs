@@ -284,6 +284,7 @@ impl fmt::Display for Fault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind {
             FaultKind::Breakdown => write!(formatter, "robot {} breaks down", self.robot),
+            FaultKind::Gone if self.is_any() => formatter.write_str("any robot is out"),
             FaultKind::Gone => write!(formatter, "robot {} is gone", self.robot),
             FaultKind::Failed => write!(formatter, "robot {} has failed", self.robot),
             FaultKind::Restarting => write!(formatter, "robot {} has failed and starts again", self.robot),

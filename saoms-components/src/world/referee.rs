@@ -356,8 +356,8 @@ impl Referee {
 
     /// True if a robot that is out since then is off the floor, or out of service where it stands, or is back.
     pub(super) fn was_out(&self, robot: u32, is_gone: bool, since: Time) -> bool {
-        let body = self.bodies.get(&robot);
-        body.is_some_and(|body| body.entered > since || if is_gone { body.gone } else { body.retired })
+        let is_back = self.bodies.get(&robot).is_some_and(|body| body.entered > since);
+        is_back || self.is_out(robot, is_gone, since)
     }
 
     /// True if a robot that is out since then is off the floor, or out of service where it stands.

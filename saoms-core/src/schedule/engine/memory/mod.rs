@@ -347,12 +347,8 @@ impl Engine {
         if self.memory.takes(self.phase) {
             self.memory.outgoing.push((network, from_run));
             self.want_cut(now);
-        } else if self.memory.is_on()
-            && self.memory.ending == Ending::Made
-            && matches!(from_run, FromRun::Message { .. })
-        {
-            // Others would act on it, and the fleet goes on from before that, as after a crash.
-        } else {
+        } else if self.memory.ending != Ending::Made || !matches!(from_run, FromRun::Message { .. }) {
+            // Others would act on what is said in a shutdown, and the fleet goes on from before that.
             self.networks.waiting.push((network, from_run));
         }
     }
