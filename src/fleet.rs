@@ -100,8 +100,17 @@ impl<'a> DiagnosticReport<'a> {
 
     /// The diagnostics of at least this severity, as people read them.
     pub(crate) fn human(self, least: Severity) -> Human<'a> {
-        let shown = self.reported().filter(|one| one.severity >= least);
-        Human::of(shown, self.sources, io::stderr().is_terminal())
+        self.human_in(least, io::stderr().is_terminal())
+    }
+
+    /// The same, in colours where somebody else shows them.
+    pub(crate) fn human_in(self, least: Severity, coloured: bool) -> Human<'a> {
+        Human::of(self.reported().filter(|one| one.severity >= least), self.sources, coloured)
+    }
+
+    /// All diagnostics as values of JSON.
+    pub(crate) fn values(self) -> Vec<Value> {
+        json(self.diagnostics, self.sources)
     }
 
     /// All diagnostics as JSON, with the wiring where it is asked for.

@@ -22,6 +22,8 @@ enum Exit {
     Failed = 1,
     /// The input is wrong and nothing was started.
     WrongInput = 2,
+    /// A plan has changes.
+    Changes = 3,
     /// Ctrl-C ended the run.
     Interrupted = 130,
 }

@@ -76,9 +76,29 @@ pub(crate) enum Phases {
     Together,
 }
 
-/// An airport with `robots` robots of this period, spread over a map. Luggage appears repeatedly near each of them,
-/// during `lasting`. The masters and the environment act twice as often as a robot, as in the original's files.
-pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Duration) -> String {
+/// An airport of robots, spread over a map.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Airport {
+    pub(crate) robots: u32,
+    pub(crate) period: Duration,
+    pub(crate) phases: Phases,
+    /// Time from one piece of luggage near a robot to the next.
+    pub(crate) luggage_every: Duration,
+    /// True if a zone grants the blocks of the map.
+    pub(crate) zone: bool,
+}
+
+impl Airport {
+    /// An airport without a zone, with much luggage.
+    pub(crate) fn new(robots: u32, period: Duration, phases: Phases) -> Self {
+        Self { robots, period, phases, luggage_every: period * LUGGAGE_EVERY, zone: false }
+    }
+}
+
+/// The composite of an airport. Luggage appears repeatedly near each robot, during `lasting`. The masters and the
+/// environment act twice as often as a robot, as in the original's files.
+pub(crate) fn airport(airport: Airport, lasting: Duration) -> String {
+    let Airport { robots, period, phases, luggage_every, zone } = airport;
     let columns = (1..).find(|columns| columns * columns >= robots).unwrap_or(1);
     let side = (columns * SPACING + 1).to_string();
     let place = |robot: u32| (robot % columns * SPACING, robot / columns * SPACING);
@@ -88,14 +108,22 @@ pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Du
     let half = period / 2;
     composite.add(&task("unibg.saoms.MasterEnvironmentManagingSystem", "MasterEnvironment", half), &[]);
     composite.add(&task("unibg.saoms.MasterRobotManagingSystem", "MasterRobot", half), &[]);
+    if zone {
+        composite.open(&task("saoms.Zone", "Zone", period), &[]);
+        composite.text.push_str("    <reference name=\"world\" target=\"World\"/>\n");
+        composite.close();
+    }
     let mut scenario = String::new();
-    let periods = u32::try_from(lasting.as_nanos() / period.as_nanos()).unwrap_or(u32::MAX);
     // The last wave comes after the end, so that there is always open work.
-    for wave in 0..=periods / LUGGAGE_EVERY + 1 {
-        for robot in 0..robots {
-            let ((x, y), at) = (place(robot), format_duration(period * LUGGAGE_EVERY * wave));
-            let _ = writeln!(scenario, "at {at} luggage ({},{}) to ({},{})", x + 1, y + 2, x + 4, y + 3);
-        }
+    let waves = lasting.as_nanos() / luggage_every.as_nanos() + 2;
+    for robot in 0..robots {
+        let ((x, y), every) = (place(robot), format_duration(luggage_every));
+        let (from, to) = ((x + 1, y + 2), (x + 4, y + 3));
+        let _ = writeln!(
+            scenario,
+            "from 0s every {every} {waves} times luggage ({},{}) to ({},{})",
+            from.0, from.1, to.0, to.1
+        );
     }
     composite.add(&task("launch.Environment", "Environment", half), &[("scenario", &scenario)]);
     for robot in 0..robots {

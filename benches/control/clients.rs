@@ -40,15 +40,7 @@ impl Clients {
     pub(crate) fn start(socket: &Path, followers: u32, stuck: u32, requests: u32) -> Clients {
         let (ended, events) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
         for number in stuck..followers {
-            let (socket, events) = (socket.to_owned(), Arc::clone(&events));
-            // It ends with the fleet.
-            thread::spawn(move || {
-                if let Ok(response) = Client::new(socket).request("GET", path(number), "") {
-                    for _ in response.events() {
-                        events.fetch_add(1, Ordering::Relaxed);
-                    }
-                }
-            });
+            follow(socket, path(number), &events);
         }
         let stuck = (0..stuck).filter_map(|_| reads_nothing(socket).ok()).collect();
         let asking = (0..ASKING).map(|_| {
@@ -69,6 +61,18 @@ impl Clients {
         drop(self.stuck);
         asked
     }
+}
+
+/// Follows events on a thread that ends with the fleet, and counts them.
+pub(crate) fn follow(socket: &Path, path: &'static str, events: &Arc<AtomicU64>) {
+    let (socket, events) = (socket.to_owned(), Arc::clone(events));
+    thread::spawn(move || {
+        if let Ok(response) = Client::new(socket).request("GET", path, "") {
+            for _ in response.events() {
+                events.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+    });
 }
 
 /// A client that follows a topic and reads nothing of it.

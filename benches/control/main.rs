@@ -1,5 +1,5 @@
-//! A fleet in real time without a control, with one that nobody asks, with `saoms top`, and with many clients. See
-//! `benches/README.md`.
+//! A fleet in real time without a control, with one that nobody asks, with clients, a page, a state folder, a history
+//! and a recording. See `benches/README.md`.
 
 #![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
@@ -12,6 +12,7 @@ mod common;
 use std::fmt::Write as _;
 use std::fs;
 use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -21,10 +22,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use clients::{Asked, Clients};
-use common::composite::{Phases, airport};
+use common::composite::{Airport, Phases, airport};
 use common::{Outcome, cpu_time, median, memory, verdict};
 
-/// Measures a fleet of 100 robots of 100 ms with and without a control and its clients.
+/// Measures a fleet of 100 robots of 100 ms with and without a control, its clients, and what it keeps.
 #[derive(Parser)]
 #[command(name = "cargo bench --bench control --")]
 struct Arguments {
@@ -46,6 +47,9 @@ struct Arguments {
     /// Requests of the status in a second.
     #[arg(long, default_value_t = 1000)]
     requests: u32,
+    /// The loads.
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = LOADS)]
+    loads: Vec<Load>,
     /// Flag that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
@@ -57,7 +61,7 @@ const WARM_UP: Duration = Duration::from_secs(2);
 const DROPPED: Duration = Duration::from_secs(13);
 
 /// What runs beside the fleet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
 enum Load {
     /// The fleet has no control (`--control none`).
     NoControl,
@@ -67,9 +71,29 @@ enum Load {
     Top,
     /// Clients that follow, read nothing, and ask.
     Clients,
+    /// A page of the dashboard follows the stream.
+    Page,
+    /// The fleet keeps its state (`--state`).
+    State,
+    /// It writes its history (`--history`).
+    History,
+    /// It records what `saoms view` shows (`--report`).
+    Recording,
+    /// All of `Page`, `State`, `History` and `Recording`.
+    All,
 }
 
-const LOADS: [Load; 4] = [Load::NoControl, Load::Unasked, Load::Top, Load::Clients];
+const LOADS: [Load; 9] = [
+    Load::NoControl,
+    Load::Unasked,
+    Load::Top,
+    Load::Clients,
+    Load::Page,
+    Load::State,
+    Load::History,
+    Load::Recording,
+    Load::All,
+];
 
 impl Load {
     fn name(self) -> &'static str {
@@ -78,6 +102,11 @@ impl Load {
             Load::Unasked => "not asked",
             Load::Top => "`top`",
             Load::Clients => "clients",
+            Load::Page => "page",
+            Load::State => "state",
+            Load::History => "history",
+            Load::Recording => "recording",
+            Load::All => "page, state, history and recording",
         }
     }
 }
@@ -120,7 +149,8 @@ fn main() -> Outcome<()> {
     let mut all = Vec::new();
     for round in 0..arguments.rounds {
         // Forwards in one round and backwards in the next.
-        let order: Vec<Load> = if round % 2 == 0 { LOADS.to_vec() } else { LOADS.into_iter().rev().collect() };
+        let order: Vec<Load> =
+            if round % 2 == 0 { arguments.loads.clone() } else { arguments.loads.iter().rev().copied().collect() };
         for load in order {
             eprintln!("round {}: {}", round + 1, load.name());
             let measured = measure(&arguments, load)?;
@@ -136,8 +166,12 @@ fn main() -> Outcome<()> {
         }
     }
     let missed = |load| -> u64 { all.iter().filter(|one| one.load == load).map(|one| one.missed).sum() };
-    let (with, without) = (missed(Load::Clients), missed(Load::Unasked));
-    writeln!(page, "\nMissed with clients {with}, without {without}: {}.", verdict(with <= without))?;
+    writeln!(page)?;
+    let without = missed(Load::Unasked);
+    for load in [Load::Clients, Load::All] {
+        let with = missed(load);
+        writeln!(page, "Missed with {} {with}, without {without}: {}.", load.name(), verdict(with <= without))?;
+    }
     let resident =
         |load| median(all.iter().filter(|one| one.load == load).map(|one| one.resident_mb)).unwrap_or(f64::NAN);
     let more = resident(Load::Unasked) - resident(Load::NoControl);
@@ -153,7 +187,7 @@ fn main() -> Outcome<()> {
 fn measure(arguments: &Arguments, load: Load) -> Outcome<Measured> {
     let folder = tempfile::tempdir()?;
     let lasting = Duration::from_secs(arguments.seconds) + WARM_UP + DROPPED;
-    let composite = airport(arguments.robots, Duration::from_millis(100), Phases::Spread, lasting);
+    let composite = airport(Airport::new(arguments.robots, Duration::from_millis(100), Phases::Spread), lasting);
     fs::write(folder.path().join("load.composite"), composite)?;
     let (socket, report) = (folder.path().join("fleet.sock"), folder.path().join("report.json"));
     let command = || {
@@ -162,20 +196,33 @@ fn measure(arguments: &Arguments, load: Load) -> Outcome<Measured> {
         command
     };
     let mut run = command();
-    run.args(["run", "load.composite", "--stay", "--quiet", "--short-report", "--report", "report.json", "--control"]);
+    run.args(["run", "load.composite", "--stay", "--quiet", "--report", "report.json"]);
+    let is = |one| load == one || load == Load::All;
+    if !is(Load::Recording) {
+        run.arg("--short-report");
+    }
+    if is(Load::State) {
+        run.args(["--state", "state"]);
+    }
+    if is(Load::History) {
+        run.args(["--history", "history.db"]);
+    }
+    run.arg("--control");
     let mut child = run.arg(if load == Load::NoControl { "none" } else { "fleet.sock" }).spawn()?;
     sleep(WARM_UP);
     let start = cpu_time(child.id())?;
     let begun = Instant::now();
     let (mut clients, mut top) = (None, None);
     match load {
-        Load::NoControl | Load::Unasked => {}
+        Load::NoControl | Load::Unasked | Load::State | Load::History | Load::Recording => {}
         Load::Top => {
             top = Some(command().args(["top", "--every", "100ms", "--fleet", "./fleet.sock"]).spawn()?);
         }
         Load::Clients => {
             clients = Some(Clients::start(&socket, arguments.followers, arguments.stuck, arguments.requests));
         }
+        // It ends with the fleet.
+        Load::Page | Load::All => clients::follow(&socket, "/v1/stream", &Arc::default()),
     }
     sleep(Duration::from_secs(arguments.seconds).saturating_sub(begun.elapsed()));
     let cpu = cpu_time(child.id())?;

@@ -8,16 +8,16 @@ use saoms_core::report::RunReport;
 use saoms_core::schedule::Settings;
 use serde::{Deserialize, Serialize};
 
-use crate::common::composite::{Composite, Phases, Task, airport};
+use crate::common::composite::{Airport, Composite, Task, airport};
 use crate::common::{Outcome, cpu_time, deploy, memory};
 
 /// A fleet to measure.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) enum Case {
     /// Robots in real time.
-    Real { robots: u32, period_ms: u32, phases: Phases, seconds: u32 },
+    Real { airport: Airport, seconds: u32 },
     /// Robots in virtual time.
-    Robots { robots: u32 },
+    Robots { airport: Airport, seconds: u32 },
     /// Components that do nothing, in virtual time.
     Empty { tasks: u32 },
 }
@@ -52,23 +52,20 @@ impl Component for Empty {
 }
 
 const ROBOT: &str = "saoms.Robot";
-/// The period in virtual time, where it says nothing about speed.
+/// The period of the components that do nothing, in virtual time.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Approximate number of executions in virtual time.
-const ROBOT_EXECUTIONS: u32 = 100_000;
 const EMPTY_EXECUTIONS: u32 = 3_000_000;
 
 impl Case {
     pub(crate) fn measure(self) -> Outcome<Measured> {
         let (text, settings, lasting) = match self {
-            Case::Real { robots, period_ms, phases, seconds } => {
+            Case::Real { airport: fleet, seconds } => {
                 let lasting = Duration::from_secs(seconds.into());
-                let period = Duration::from_millis(period_ms.into());
-                (airport(robots, period, phases, lasting), Settings::default(), lasting)
+                (airport(fleet, lasting), Settings::default(), lasting)
             }
-            Case::Robots { robots } => {
-                let lasting = PERIOD * (ROBOT_EXECUTIONS / robots);
-                (airport(robots, PERIOD, Phases::Spread, lasting), Settings::simulated(1), lasting)
+            Case::Robots { airport: fleet, seconds } => {
+                let lasting = Duration::from_secs(seconds.into());
+                (airport(fleet, lasting), Settings::simulated(1), lasting)
             }
             Case::Empty { tasks } => (empty(tasks), Settings::simulated(1), PERIOD * (EMPTY_EXECUTIONS / tasks)),
         };

@@ -19,7 +19,7 @@ use saoms_api::{Class, Component, Context, Failure};
 use saoms_core::schedule::Settings;
 use serde::{Deserialize, Serialize};
 
-use common::composite::{Composite, Phases, Task, airport};
+use common::composite::{Airport, Composite, Phases, Task, airport};
 use common::{Outcome, child, deploy, median, memory, verdict};
 
 /// Measures load, check, start and first execution of composites, and their memory.
@@ -150,7 +150,7 @@ impl Case {
 
     fn composite(self) -> String {
         match self {
-            Case::Robots(size) => airport(size, PERIOD, Phases::Spread, Duration::ZERO),
+            Case::Robots(size) => airport(Airport::new(size, PERIOD, Phases::Spread), Duration::ZERO),
             Case::Idle(size) => {
                 let mut composite = Composite::new();
                 for number in 0..size {

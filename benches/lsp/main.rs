@@ -15,7 +15,7 @@ use std::time::Duration;
 use clap::Parser;
 use serde::Serialize;
 
-use common::composite::{Phases, airport};
+use common::composite::{Airport, Phases, airport};
 use common::{Outcome, median, verdict};
 use editor::Editor;
 use texts::Case;
@@ -132,7 +132,7 @@ fn row(text: &str, what: &str, times: &[f64]) -> Row {
 fn measure(size: u32, rounds: usize, rows: &mut Vec<Row>) -> Outcome<()> {
     // A world, two masters and an environment are among the components.
     let period = Duration::from_millis(100);
-    let text = airport(size.saturating_sub(4).max(1), period, Phases::Together, Duration::from_secs(1));
+    let text = airport(Airport::new(size.saturating_sub(4).max(1), period, Phases::Together), Duration::from_secs(1));
     let mut editor = Editor::open("airport", &[("fleet.composite".to_owned(), text.clone())])?;
     let name = components(&size);
     let mut row = |what: &str, times: &[f64]| rows.push(row(&name, what, times));

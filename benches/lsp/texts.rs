@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::common::composite::{Phases, airport};
+use crate::common::composite::{Airport, Phases, airport};
 
 /// A group of open files, of which the last one is asked about.
 pub(crate) struct Case {
@@ -29,7 +29,7 @@ pub(crate) fn cases() -> Vec<Case> {
     let nested = |open: &str, close: &str| composite(&format!("{}{}", open.repeat(DEPTH), close.repeat(DEPTH)));
     let component = "<component name=\"Ä\">";
     let period = Duration::from_millis(100);
-    let fleet = airport(1500, period, Phases::Together, Duration::from_secs(1));
+    let fleet = airport(Airport::new(1500, period, Phases::Together), Duration::from_secs(1));
     let fleet = fleet.replacen("<component", "<!-- ä --><component", 1).replace('\n', " ");
     let world = "<component name=\"World\"><implementation.java class=\"saoms.World\"/></component>";
     let repeated = |text: &str| text.repeat(LINE / text.len());

@@ -25,6 +25,10 @@ const LIMIT: usize = 256 << 20;
 struct Alone;
 
 impl NetworkHooks for Alone {
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
     fn lose(&self) {}
 
     fn control(&self, _request: ControlRequest, _reply: Reply) {}
@@ -72,6 +76,7 @@ pub(super) fn run(program: &Program) -> Outcome<()> {
             name: name.clone(),
             patience: PATIENCE,
             limit: LIMIT,
+            linger: 0,
             components: BTreeSet::from([name.clone()]),
             others: BTreeSet::new(),
             memory: None,

@@ -57,10 +57,10 @@
         {"name": "ahead", "type": "uint32"}]})
 
 #define GRANT                                                                                               \
-    JSON({"name": "Grant", "key": "link", "place": "block", "fields": [{"name": "link", "type": "uint64"},  \
+    JSON({"name": "Grant", "key": "link", "place": "address", "fields": [{"name": "link", "type": "uint64"}, \
         {"name": "zone", "type": "uint32"}, {"name": "term", "type": "uint64"},                             \
         {"name": "robot", "type": "uint32"}, {"name": "incarnation", "type": "uint64"},                     \
-        {"name": "heard", "type": "uint64"}, {"name": "block", "type":)                                     \
+        {"name": "heard", "type": "uint64"}, {"name": "address", "type":)                                   \
     BLOCK JSON(}, {"name": "steps", "type":) STEPS JSON(}, {"name": "waits_for", "type": "uint32"},         \
         {"name": "wanted", "type":)                                                                         \
     BLOCK JSON(}, {"name": "aside", "type":) BLOCK JSON(}, {"name": "aside_rank", "type": "uint64"}]})

@@ -14,6 +14,8 @@
 /* The most zones that it knows, and the most blocks that it holds. */
 #define MOST_ZONES 64
 #define MOST_HELD 24
+/* The most former zones with blocks whose present zone it does not know. */
+#define MOST_FORMER 64
 
 /* Enough for a request to a zone with `MOST_HELD` steps. */
 #define REQUEST_BYTES 640
@@ -25,12 +27,19 @@ typedef struct Step {
     Block block;
 } Step;
 
-/* What it knows of a zone. */
-typedef struct Zone {
-    uint32_t number;
+/* The blocks of a zone, and its term. */
+typedef struct Area {
     uint64_t term;
     Block corner;
     uint32_t width, height;
+} Area;
+
+/* What it knows of a zone. */
+typedef struct Zone {
+    uint32_t number;
+    /* False once other zones have its blocks. */
+    int is_zone;
+    Area area;
     /* The highest number of a step that it received; all of these that it does not hold are released. */
     uint64_t received;
     /* The number of its newest request, that of the newest one that the zone took in, and the bytes of the former. */
@@ -51,6 +60,8 @@ typedef struct Passage {
     int enters;
     Zone zones[MOST_ZONES];
     size_t zone_count;
+    Area former[MOST_FORMER];
+    size_t former_count;
     /* Executions since it repeated its requests, and all. */
     int silent;
     uint64_t executions;
@@ -89,7 +100,21 @@ int may_enter(const Patrol *patrol);
 /* Decides which block to want. */
 void want(Patrol *patrol, const SaomsHostHandle *host);
 
-/* In a site with zones (zones.c): */
+/* In a site with zones (areas.c): */
+
+/* Whether an area, with so many blocks around it, has a block. */
+int contains(const Area *area, Block block, int64_t margin);
+
+/* The block of an area that is closest to a block. */
+Block closest(const Area *area, Block block);
+
+/* The zone of a number that it has heard of, or null. */
+Zone *zone_of(Passage *passage, uint32_t number);
+
+/* Learns the area of a zone, unless that was a zone before others of which it has heard. */
+SaomsStatus learn_area(Passage *passage, uint32_t number, const Area *area, SaomsSink error);
+
+/* The same (zones.c): */
 
 /* It is on the floor, and holds the block where it is; or it wants to enter the floor there, and holds none. */
 void begin_passage(Patrol *patrol, const SaomsHostHandle *host, int enters);

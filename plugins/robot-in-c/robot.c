@@ -296,6 +296,8 @@ static SaomsStatus patrol_initialize(void *component, const SaomsHostHandle *hos
     SaomsTopicView requests = topic("GRANTREQUESTTOPIC", "GrantRequest", GRANT_REQUEST, 0);
     SaomsTopicView territories = topic("ZONETOPIC", "Territory", TERRITORY, 0);
     SaomsTopicView grants = topic("GRANTTOPIC", "Grant", GRANT, 0);
+    /* Grants are sent to the number of their robot, as a column, in row 0. */
+    SaomsRegionView address = {{(int32_t)patrol->number, 0}, {(int32_t)patrol->number, 0}};
     Passage *passage = &patrol->passage;
     SaomsStatus status;
     if ((status = functions->publish(host->state, &positions, &patrol->positions, error)) != SaomsStatus_OK ||
@@ -307,6 +309,7 @@ static SaomsStatus patrol_initialize(void *component, const SaomsHostHandle *hos
         (status = functions->subscribe(host->state, &territories, &passage->territories_heard, error)) !=
             SaomsStatus_OK ||
         (status = functions->subscribe(host->state, &grants, &passage->grants_heard, error)) != SaomsStatus_OK ||
+        (status = functions->set_region(host->state, passage->grants_heard, &address, error)) != SaomsStatus_OK ||
         (status = functions->reference(host->state, saoms_text("world"), saoms_text("saoms.Hardware"), &patrol->world,
                                        error)) != SaomsStatus_OK) {
         return status;

@@ -98,66 +98,18 @@ void take_no_more(Patrol *patrol) {
 
 /* What zones say. */
 
-static int contains(const Zone *zone, Block block, int64_t margin) {
-    int64_t x = (int64_t)block.x - zone->corner.x, y = (int64_t)block.y - zone->corner.y;
-    return x >= -margin && y >= -margin && x < zone->width + margin && y < zone->height + margin;
-}
-
-static int32_t within(int32_t value, int32_t from, uint32_t length) {
-    int64_t last = (int64_t)from + length - 1;
-    return value < from ? from : value > last ? (int32_t)last : value;
-}
-
-/* The block of a zone that is closest to a block. */
-static Block closest(const Zone *zone, Block block) {
-    block.x = within(block.x, zone->corner.x, zone->width);
-    block.y = within(block.y, zone->corner.y, zone->height);
-    return block;
-}
-
 static int is_beside(Block one, Block other) {
     return labs((long)one.x - other.x) + labs((long)one.y - other.y) == 1;
 }
 
-static Zone *zone_of(Passage *passage, uint32_t number) {
-    size_t at;
-    for (at = 0; at < passage->zone_count; at++) {
-        if (passage->zones[at].number == number) {
-            return &passage->zones[at];
-        }
-    }
-    return NULL;
-}
-
 static SaomsStatus hear_territory(Passage *passage, SaomsReader *reader, SaomsSink error) {
     uint32_t number = saoms_read_u32(reader);
-    uint64_t term = saoms_read_u64(reader);
-    Zone *zone = zone_of(passage, number);
-    size_t at;
-    if (reader->failed || (zone != NULL && term < zone->term)) {
-        return SaomsStatus_OK;
-    }
-    if (zone == NULL) {
-        if (passage->zone_count == MOST_ZONES) {
-            return saoms_fail(error, "there are more zones than the patrol can know");
-        }
-        zone = &passage->zones[passage->zone_count++];
-        zone->number = number;
-        passage->has_zones = 1;
-    } else if (term > zone->term) {
-        /* It lost its record, and asks what this robot holds: the request below has the new term. */
-        zone->heard = 0;
-    }
-    zone->term = term;
-    zone->corner = read_block(reader);
-    zone->width = saoms_read_u32(reader);
-    zone->height = saoms_read_u32(reader);
-    for (at = 0; at < passage->held_count; at++) {
-        if (passage->held[at].zone == 0 && contains(zone, passage->held[at].block, 0)) {
-            passage->held[at].zone = number;
-        }
-    }
-    return SaomsStatus_OK;
+    Area area;
+    area.term = saoms_read_u64(reader);
+    area.corner = read_block(reader);
+    area.width = saoms_read_u32(reader);
+    area.height = saoms_read_u32(reader);
+    return reader->failed ? SaomsStatus_OK : learn_area(passage, number, &area, error);
 }
 
 static void hear_grant(Patrol *patrol, SaomsReader *reader) {
@@ -175,7 +127,7 @@ static void hear_grant(Patrol *patrol, SaomsReader *reader) {
     read_block(reader);
     zone = zone_of(passage, number);
     if (reader->failed || robot != patrol->number || incarnation != passage->incarnation || zone == NULL ||
-        term != zone->term) {
+        !zone->is_zone || term != zone->area.term) {
         return;
     }
     if (heard > zone->heard) {
@@ -236,16 +188,16 @@ static SaomsBytes request(const Patrol *patrol, const Zone *zone, int standing, 
         count += passage->held[at].zone == zone->number;
     }
     /* A zone that is not near has nothing to grant. */
-    if (standing != MAKES_WAY || passage->enters || (count == 0 && !contains(zone, end, NEAR))) {
+    if (standing != MAKES_WAY || passage->enters || (count == 0 && !contains(&zone->area, end, NEAR))) {
         goal = end;
     }
     saoms_write_u64(message, (uint64_t)zone->number << 32 | patrol->number);
     saoms_write_u32(message, zone->number);
-    saoms_write_u64(message, zone->term);
+    saoms_write_u64(message, zone->area.term);
     saoms_write_u32(message, patrol->number);
     saoms_write_u64(message, passage->incarnation);
     saoms_write_u64(message, zone->requests);
-    write_block(message, closest(zone, passage->held[0].block));
+    write_block(message, closest(&zone->area, passage->held[0].block));
     write_block(message, passage->held[0].block);
     write_block(message, end);
     saoms_write_u64(message, zone->received);
@@ -264,6 +216,16 @@ static SaomsBytes request(const Patrol *patrol, const Zone *zone, int standing, 
     return saoms_written(message);
 }
 
+/* What another zone granted, before this one had the block, it has received, too. */
+static void note_received(const Passage *passage, Zone *zone) {
+    size_t at;
+    for (at = 0; at < passage->held_count; at++) {
+        if (passage->held[at].zone == zone->number && passage->held[at].number > zone->received) {
+            zone->received = passage->held[at].number;
+        }
+    }
+}
+
 SaomsStatus ask_zones(Patrol *patrol, const SaomsHostHandle *host, int standing, SaomsSink error) {
     Passage *passage = &patrol->passage;
     int waits = passage->held_count == 1, again;
@@ -278,9 +240,14 @@ SaomsStatus ask_zones(Patrol *patrol, const SaomsHostHandle *host, int standing,
         Zone *zone = &passage->zones[at];
         uint8_t memory[REQUEST_BYTES];
         SaomsBuffer message = saoms_writer(memory, sizeof memory);
-        SaomsBytes bytes = request(patrol, zone, standing, &message);
+        SaomsBytes bytes;
         uint64_t key = (uint64_t)zone->number << 32 | patrol->number;
         SaomsStatus status;
+        if (!zone->is_zone) {
+            continue;
+        }
+        note_received(passage, zone);
+        bytes = request(patrol, zone, standing, &message);
         if (bytes.length != zone->said_length || memcmp(bytes.data, zone->said, bytes.length) != 0) {
             /* Something changed, so it is a new request. */
             zone->requests++;

@@ -156,7 +156,7 @@ pub enum CallError {
     /// The provider is in the middle of an execution or of another call, by this caller's own chain of calls or because
     /// it is slow.
     Busy {
-        /// The component that offers the service.
+        /// The component that offers the service, or the address of the server that does.
         provider: String,
     },
     /// The provider is not running: not scheduled yet, unscheduled, or failed.
@@ -185,6 +185,10 @@ impl fmt::Display for CallError {
                 formatter,
                 "reference `{reference}` is not wired: give it a target in the composite, or do not call it"
             ),
+            // No path of a component has this.
+            CallError::Busy { provider } if provider.contains("://") => {
+                write!(formatter, "the server at `{provider}` is busy")
+            }
             CallError::Busy { provider } => {
                 write!(formatter, "component `{provider}` is in the middle of an execution and cannot be called")
             }

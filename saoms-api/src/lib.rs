@@ -74,7 +74,7 @@ pub use adaptation::{
 pub use bounded::Bounded;
 pub use chance::Chance;
 pub use component::{Class, Component, Own, Saved, StopFunction, TaskInterface, TaskInterfaceReference};
-pub use context::{Context, Level};
+pub use context::{Context, KeptByOther, Level};
 pub use failure::{CallError, Failure};
 pub use field::Field;
 pub use finding::{Finding, Place};

@@ -1,16 +1,13 @@
-// The page: its head, its parts, and which of them is shown. What is shown follows the address, so that links, the
-// buttons of the browser and bookmarks work.
+// The page of a running fleet: its head, and its parts.
 
-import { component } from "./component.js";
 import { components } from "./components.js";
 import { h, text, time } from "./dom.js";
 import { Fleet } from "./fleet.js";
 import { Orders } from "./orders.js";
-import { FIGURES, alerts, assembly, log, plots, topics } from "./panels.js";
+import { load, ofViews, open, present, wants } from "./page.js";
+import { alerts, assembly, log, plots, topics } from "./panels.js";
 
-const main = document.getElementById("main");
 const connection = document.getElementById("connection");
-const open = (name) => `#/component/${encodeURIComponent(name)}`;
 
 async function begin() {
   const answer = await fetch("/v1/session").catch(() => null);
@@ -25,80 +22,25 @@ async function begin() {
   const fleet = new Fleet();
   const orders = new Orders(fleet, session.right);
   await fleet.loadTopics().catch(() => {});
-  const page = { fleet, orders, open, figures: FIGURES, follow: (wants) => fleet.follow({ ...shownPart.wants, ...wants }) };
+  const page = { fleet, orders, open, follow: (more) => fleet.follow({ ...wants(), ...more }) };
   const views = await Promise.all(session.views.map(load));
-  const figures = views.flatMap(({ module }) => module.figures ?? []);
-  page.figures = [...figures, ...FIGURES];
-  fleet.series = page.figures.flatMap(({ lines }) => lines);
+  const badge = h("span", { class: "badge", hidden: true });
   const parts = [
-    ...views.filter(({ module }) => module.shows(fleet)).map(({ name, title, module }) => ({ path: name, title, make: () => module.view(page) })),
+    ...ofViews(views, page),
     { path: "components", title: "Components", make: () => components(page) },
     { path: "plots", title: "Plots", make: () => plots(page) },
     { path: "topics", title: "Topics", make: () => topics(page) },
-    { path: "alerts", title: "Alerts", make: () => alerts(page) },
+    { path: "alerts", title: "Alerts", badge, make: () => alerts(page) },
     { path: "log", title: "Log", make: () => log(page) },
     { path: "assembly", title: "Assembly", make: () => assembly(page) },
   ];
-  head(fleet, orders, session, parts);
-  addEventListener("hashchange", () => show(parts, page));
+  head(fleet, orders, session, badge);
   fleet.addEventListener("connection", () => connected(fleet));
-  show(parts, page);
-  setInterval(() => shownPart?.refresh(), 100);
-}
-
-/** A view of a crate of components, with its style sheet. */
-async function load({ name, title }) {
-  document.head.append(h("link", { rel: "stylesheet", href: `/assets/views/${name}/view.css` }));
-  return { name, title, module: await import(`/assets/views/${name}/view.js`) };
-}
-
-/** A name in an address, as somebody may have typed it. */
-function decoded(name) {
-  try {
-    return decodeURIComponent(name);
-  } catch {
-    return name;
-  }
-}
-
-/** The part that is shown. */
-let shownPart = null;
-
-function show(parts, page) {
-  const [, path, name] = location.hash.match(/^#\/([^/]*)(?:\/(.*))?$/) ?? [];
-  const chosen = parts.find((part) => part.path === path) ?? parts[0];
-  shownPart?.close?.();
-  const part = path === "component" && name ? component(decoded(name), page) : chosen.make();
-  main.replaceChildren(part.element);
-  main.scrollTop = 0;
-  let isDue = true;
-  let last = 0;
-  const changed = () => (isDue = true);
-  page.fleet.addEventListener("change", changed);
-  shownPart = {
-    wants: part.wants ?? {},
-    refresh() {
-      if (document.hidden || !isDue || performance.now() - last < part.every) return;
-      isDue = false;
-      last = performance.now();
-      part.update();
-    },
-    close() {
-      page.fleet.removeEventListener("change", changed);
-      part.close?.();
-    },
-  };
-  page.fleet.follow(shownPart.wants);
-  part.update();
-  const now = path === "component" ? "components" : chosen.path;
-  for (const tab of document.querySelectorAll("#tabs a")) {
-    if (tab.dataset.path === now) tab.setAttribute("aria-current", "page");
-    else tab.removeAttribute("aria-current");
-  }
+  present(parts, page);
 }
 
 /** The head: what the fleet does, and the orders to all of it. */
-function head(fleet, orders, session, parts) {
+function head(fleet, orders, session, badge) {
   const place = { fleet: document.getElementById("fleet"), phase: document.getElementById("phase"), time: document.getElementById("time"), summary: document.getElementById("summary") };
   const isStopped = () => [...fleet.components.values()].some((one) => one.emergency_stop);
   const pause = orders.button("Pause", { title: "saoms pause", order: () => orders.send("POST", "/v1/pause"), isDone: () => fleet.state.paused });
@@ -110,10 +52,6 @@ function head(fleet, orders, session, parts) {
   // At the socket there is nothing to log out of.
   fetch("/login", { method: "HEAD" }).then((answer) => (leave.hidden = !answer.ok)).catch(() => {});
   document.getElementById("orders").append(right, pause, resume, release, stop, leave);
-
-  const badge = h("span", { class: "badge", hidden: true });
-  const tabs = parts.map((part) => h("a", { href: `#/${part.path}`, "data-path": part.path }, part.title, part.path === "alerts" ? badge : null));
-  document.getElementById("tabs").append(...tabs);
 
   const update = () => {
     const { about, state } = fleet;

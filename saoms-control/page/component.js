@@ -41,13 +41,9 @@ export function component(name, { fleet, orders, open }) {
 
   async function explain(at) {
     why.replaceChildren(h("p", { class: "muted" }, "…"));
-    const query = new URLSearchParams({ component: name });
-    // A bare number is milliseconds; the record itself is to be among what is explained.
-    if (at !== null) query.set("at", `${Math.ceil(at * 1e6 + 1)}us`);
-    const answer = await fetch(`/v1/why?${query}`).catch(() => null);
-    const content = await answer?.json().catch(() => null);
-    if (!answer?.ok) return why.replaceChildren(h("p", { class: "empty" }, content?.error ?? "The fleet cannot be reached."));
-    why.replaceChildren(...explanation(content.answer, name, open));
+    const told = await fleet.why(name, at).catch(() => null);
+    if (!told?.isOk) return why.replaceChildren(h("p", { class: "empty" }, told?.content?.error ?? "The fleet cannot be reached."));
+    why.replaceChildren(...explanation(told.content.answer, name, open));
   }
 
   function update() {
@@ -64,7 +60,7 @@ export function component(name, { fleet, orders, open }) {
     [stop.hidden, release.hidden] = [one.emergency_stop, !one.emergency_stop];
     [start.hidden, end.hidden] = [!isPeriodic || one.state === "running", !isPeriodic || one.state !== "running"];
     const seconds = fleet.age(one);
-    text(age, seconds === null ? "it has said nothing yet" : `said ${ago(seconds)}`);
+    text(age, fleet.isFinished ? "" : seconds === null ? "it has said nothing yet" : `said ${ago(seconds)}`);
     element.classList.toggle("stale", fleet.isStale(one));
     const rows = Object.entries(one.values ?? {}).map(([field, value]) => [field.replaceAll("_", " "), shown(value)]);
     if (one.waits_for) rows.push(["waits for", one.waits_for]);

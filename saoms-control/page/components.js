@@ -1,6 +1,6 @@
 // All components in a table.
 
-import { h, keyed, micros, shown, text } from "./dom.js";
+import { Rows, classes, h, micros, shown, text } from "./dom.js";
 
 const COLUMNS = [
   { name: "name", title: "Component", of: (one) => one.name },
@@ -59,10 +59,11 @@ export function components({ fleet, open }) {
 
   function show(row, one) {
     text(row.badge, state(one));
-    row.badge.className = `state ${state(one)}`;
+    classes(row.badge, `state ${state(one)}`);
     row.classList.toggle("stale", fleet.isStale(one));
     COLUMNS.forEach((column, index) => index > 1 && text(row.shownCells[index], column.show ? column.show(one) : column.of(one)));
-    row.shownCells[2].title = row.shownCells[2].textContent;
+    const said = row.shownCells[2];
+    if (said.title !== said.textContent) said.title = said.textContent;
   }
 
   function update() {
@@ -75,8 +76,9 @@ export function components({ fleet, open }) {
       all.sort((a, b) => (isDown ? -compare(a, b) : compare(a, b)));
     }
     text(count, all.length === total ? `${total}` : `${all.length} of ${total}`);
-    keyed(body, all, (one) => one.name, make, show);
+    rows.update(all, (one) => one.name);
   }
 
-  return { element, update, every: 500 };
+  const rows = new Rows(body, make, show);
+  return { element, update, every: 500, close: () => rows.close() };
 }

@@ -97,3 +97,70 @@ export function keyed(parent, items, key, make, update) {
     known.delete(name);
   }
 }
+
+/** Rows that are always shown as they are; of more, those that nobody sees follow a little later. */
+const MANY = 200;
+/** Rows above and below those that are seen, and rows that follow at once. */
+const [NEAR, CHUNK] = [6, 20];
+
+/**
+ * The rows of a table, which may be very many: to lay out a thousand rows takes a browser longer than there is between two
+ * frames, so that those out of sight follow in chunks. `make` makes a row for an item, `show` shows the item in its row.
+ */
+export class Rows {
+  constructor(body, make, show) {
+    Object.assign(this, { body, make, show });
+    this.late = new Map();
+    this.timer = null;
+    this.scrolled = () => this.late.size > 0 && requestAnimationFrame(() => this.#seen());
+    addEventListener("scroll", this.scrolled, { capture: true, passive: true });
+  }
+
+  update(items, key) {
+    const [first, last] = items.length > MANY ? this.#range() : [0, items.length];
+    let place = 0;
+    keyed(this.body, items, key, this.make, (row, item) => {
+      if (place < first || place > last) this.late.set(row, item);
+      else this.#shows(row, item);
+      place += 1;
+    });
+    if (this.late.size > 0) this.timer ??= setInterval(() => this.#next(), 100);
+  }
+
+  close() {
+    clearInterval(this.timer);
+    removeEventListener("scroll", this.scrolled, { capture: true });
+  }
+
+  /** The places of the first and the last row that can be seen, and of some around them. */
+  #range() {
+    const height = this.body.firstElementChild?.offsetHeight || 30;
+    const top = this.body.getBoundingClientRect().top;
+    const clip = this.body.closest(".scroll").getBoundingClientRect();
+    const [from, to] = [Math.max(0, clip.top), Math.min(innerHeight, clip.bottom)];
+    return [Math.floor((from - top) / height) - NEAR, Math.ceil((to - top) / height) + NEAR];
+  }
+
+  #shows(row, item) {
+    this.late.delete(row);
+    this.show(row, item);
+  }
+
+  #seen() {
+    const [first, last] = this.#range();
+    for (let place = Math.max(0, first); place <= last; place++) {
+      const row = this.body.children[place];
+      if (this.late.has(row)) this.#shows(row, this.late.get(row));
+    }
+  }
+
+  #next() {
+    let left = CHUNK;
+    for (const [row, item] of this.late) {
+      if (left-- === 0) return;
+      this.#shows(row, item);
+    }
+    clearInterval(this.timer);
+    this.timer = null;
+  }
+}

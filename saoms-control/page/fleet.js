@@ -7,10 +7,9 @@ const LINES = 1000;
 const RECORDS = 2000;
 /** Messages of an event topic that the page keeps. */
 const EVENTS = 200;
-/** Figures that plots keep: one each two seconds. */
-const SAMPLES = 900;
 
-export class Fleet extends EventTarget {
+/** What parts of a page show of a fleet, running or not. */
+export class ShownFleet extends EventTarget {
   constructor() {
     super();
     /** The run: name, process, composites. */
@@ -27,10 +26,19 @@ export class Fleet extends EventTarget {
     this.alerts = new Map();
     this.log = [];
     this.records = { component: null, all: [], error: null };
-    /** Rows of figures over time, for plots. */
-    this.samples = [];
-    this.series = [];
     this.isConnected = false;
+  }
+
+  /** Alerts that nobody has acknowledged, and that are not over. */
+  waiting() {
+    return [...this.alerts.values()].filter((alert) => alert.over_s === null && alert.acknowledged === null);
+  }
+}
+
+/** A fleet that runs. */
+export class Fleet extends ShownFleet {
+  constructor() {
+    super();
     this.heard = 0;
     this.source = null;
     this.wants = { topics: [], component: null };
@@ -120,7 +128,6 @@ export class Fleet extends EventTarget {
     this.state = state;
     if (all) this.components = new Map(components.map((one) => [one.name, this.components.get(one.name) ?? {}]));
     for (const one of components) Object.assign(this.components.get(one.name), one);
-    if (components.some((one) => "executions" in one)) this.#sample();
   }
 
   #topic({ topic, messages }) {
@@ -141,14 +148,19 @@ export class Fleet extends EventTarget {
     if (this.records.all.length > RECORDS) this.records.all.splice(0, this.records.all.length - RECORDS);
   }
 
-  #sample() {
-    const sample = { time_s: this.state.time_s };
-    for (const { name, value } of this.series) sample[name] = value(this);
-    const last = this.samples.at(-1);
-    // While it is paused, no time passes.
-    if (last && sample.time_s <= last.time_s) return;
-    this.samples.push(sample);
-    if (this.samples.length > SAMPLES) this.samples.shift();
+  /** The plots and their figures from the start of the run; those after a time alone. */
+  async figures(after = null) {
+    const answer = await fetch(after === null ? "/v1/figures" : `/v1/figures?after=${after}`);
+    return answer.ok ? answer.json() : null;
+  }
+
+  /** Why a component did what it did before a time in seconds, or last: the status of the answer, and what it says. */
+  async why(component, at = null) {
+    const query = new URLSearchParams({ component });
+    // A bare number is milliseconds; the record itself is to be among what is explained.
+    if (at !== null) query.set("at", `${Math.ceil(at * 1e6 + 1)}us`);
+    const answer = await fetch(`/v1/why?${query}`);
+    return { isOk: answer.ok, content: await answer.json() };
   }
 
   /** Asks for the topics of the fleet. */
@@ -156,11 +168,6 @@ export class Fleet extends EventTarget {
     const answer = await fetch("/v1/topics");
     if (answer.ok) this.topicList = await answer.json();
     return this.topicList;
-  }
-
-  /** Alerts that nobody has acknowledged, and that are not over. */
-  waiting() {
-    return [...this.alerts.values()].filter((alert) => alert.over_s === null && alert.acknowledged === null);
   }
 
   /** Seconds since a component said how it is; `null` if it never did. */

@@ -3,54 +3,46 @@
 import { h, keyed, micros, shown, text, time } from "./dom.js";
 import { Plot } from "./plot.js";
 
-const running = (fleet) => [...fleet.components.values()].filter((one) => one.state === "running");
+/** Rows of figures that the page keeps: beyond, every second one is left out. */
+const ROWS = 7200;
 
-/** What each fleet plots; views add their own. */
-export const FIGURES = [
-  {
-    title: "Lateness of executions",
-    format: micros,
-    lines: [
-      { name: "late_p99", title: "99 %, worst component", value: (fleet) => Math.max(0, ...running(fleet).map((one) => one.late_us?.p99 ?? 0)) },
-      { name: "late_p50", title: "50 %, worst component", value: (fleet) => Math.max(0, ...running(fleet).map((one) => one.late_us?.p50 ?? 0)) },
-    ],
-  },
-  {
-    title: "Executions in a second",
-    lines: [{ name: "executions", title: "all components", value: rate((fleet) => sum(fleet, "executions")) }],
-  },
-  {
-    title: "Missed executions and failures",
-    lines: [
-      { name: "missed", title: "missed", value: (fleet) => sum(fleet, "missed") },
-      { name: "failures", title: "failures", value: (fleet) => sum(fleet, "failures") },
-    ],
-  },
-];
+/** The formats of figures by their units. */
+const FORMATS = { us: micros, "%": (value) => (Number.isFinite(value) ? `${Math.round(value)} %` : "–"), "": shown };
 
-function sum(fleet, field) {
-  let total = 0;
-  for (const one of fleet.components.values()) total += one[field] ?? 0;
-  return total;
-}
+export function plots({ fleet }) {
+  const place = h("div", { class: "plots" });
+  const none = h("p", { class: "empty" }, "…");
+  const note = h("p", { class: "muted" }, "From the start of the run.");
+  const element = h("section", { class: "panel" }, h("div", { class: "bar" }, h("h2", {}, "Plots"), note), none, place);
+  let all = null;
+  let rows = [];
+  let isAsking = false;
 
-/** A figure that counts up, as its growth in a second. */
-export function rate(count) {
-  let last = null;
-  return (fleet) => {
-    const now = { time_s: fleet.state.time_s, count: count(fleet) };
-    const seconds = last ? now.time_s - last.time_s : 0;
-    const value = seconds > 0 ? Math.max(0, Math.round((now.count - last.count) / seconds)) : NaN;
-    last = now;
-    return value;
-  };
-}
+  async function ask() {
+    if (isAsking) return;
+    isAsking = true;
+    const found = await fleet.figures(rows.at(-1)?.[0] ?? null).catch(() => null);
+    isAsking = false;
+    if (!found) return;
+    rows.push(...found.rows);
+    if (rows.length > ROWS) rows = rows.filter((_, index) => index % 2 === 0);
+    if (!all) {
+      let next = 1;
+      all = found.plots.map(({ title, unit, lines }) => new Plot(title, lines.map((line) => ({ ...line, column: next++ })), FORMATS[unit] ?? ((value) => `${shown(value)} ${unit}`)));
+      place.append(...all.map((plot) => plot.element));
+      none.remove();
+    }
+    draw();
+  }
 
-export function plots({ fleet, figures }) {
-  const all = figures.map(({ title, lines, format }) => new Plot(title, lines, format));
-  const note = h("p", { class: "muted" }, "From the time at which this page was opened; at most half an hour.");
-  const element = h("section", { class: "panel" }, h("div", { class: "bar" }, h("h2", {}, "Plots"), note), h("div", { class: "plots" }, ...all.map((plot) => plot.element)));
-  return { element, update: () => all.forEach((plot) => plot.update(fleet.samples)), every: 1000 };
+  const draw = () => all?.forEach((plot) => plot.update(rows, fleet.isFinished ? fleet.state.time_s : null));
+
+  function update() {
+    if (fleet.isFinished && all) draw();
+    else ask();
+  }
+
+  return { element, update, every: fleet.isFinished ? 100 : 1000 };
 }
 
 export function topics({ fleet, follow, open }) {

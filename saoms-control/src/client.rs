@@ -155,7 +155,11 @@ impl Client {
         self.request_within(PATIENCE, method, path, body)
     }
 
-    fn request_within(
+    /// The same, with this time for the answer.
+    ///
+    /// # Errors
+    /// As [`request`](Client::request).
+    pub fn request_within(
         &self,
         patience: Duration,
         method: &str,

@@ -209,6 +209,7 @@ fn roam(side: i32) -> Result<f64, Box<dyn std::error::Error>> {
             task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),
             references: Vec::new(),
             loops: Arc::default(),
+            web: Box::default(),
         });
     }
     let fleet =
@@ -337,6 +338,7 @@ fn start(shape: &Shape) -> Result<RunningFleet, Box<dyn std::error::Error>> {
             library: None,
             references: Vec::new(),
             loops: std::sync::Arc::default(),
+            web: Box::default(),
         });
     }
     Ok(RunningFleet::start(Assembly { components, ..Assembly::default() }, Settings::simulated(1), Vec::new())?)

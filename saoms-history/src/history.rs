@@ -26,8 +26,6 @@ pub struct HistoryRun {
     pub node: Option<String>,
     /// The version of the program.
     pub version: String,
-    /// Age at which records of the journal are removed; `None` is never.
-    pub keep: Option<Duration>,
 }
 
 /// Who hears that a history cannot be written.
@@ -45,6 +43,7 @@ pub trait HistoryEvents: Send + Sync {
 pub struct History {
     path: PathBuf,
     run: HistoryRun,
+    keep: Option<Duration>,
     events: Box<dyn HistoryEvents>,
     lost: Arc<AtomicU64>,
     /// Locked for moments alone: a thread of the run asks which topics are wanted.
@@ -76,18 +75,24 @@ struct State {
 }
 
 impl History {
-    /// The history at a path. The file is tried before the run begins.
+    /// The history at a path. The file is tried before the run begins. Records of the journal are removed from it at
+    /// the age of `keep`; `None` is never.
     ///
     /// # Errors
     /// The file is no history, or cannot be used.
-    pub fn open(path: &Path, run: HistoryRun, events: Box<dyn HistoryEvents>) -> Result<History, HistoryError> {
+    pub fn open(
+        path: &Path,
+        run: HistoryRun,
+        keep: Option<Duration>,
+        events: Box<dyn HistoryEvents>,
+    ) -> Result<History, HistoryError> {
         let sources = HistoryRegistration::linked().into_iter();
         let source =
             |one: &HistoryRegistration| Source { tables: one.tables, history: (one.new)(), topics: BTreeSet::new() };
         let sources: Vec<Source> = sources.map(source).collect();
         drop(open(path, &tables(&sources))?);
         let (path, sources) = (path.to_owned(), Mutex::new(sources));
-        Ok(History { path, run, events, lost: Arc::default(), sources, state: Mutex::default() })
+        Ok(History { path, run, keep, events, lost: Arc::default(), sources, state: Mutex::default() })
     }
 
     /// The number of rows that could not be written.
@@ -148,10 +153,12 @@ impl Observer for History {
         let tables = tables(&self.sources.lock().unwrap_or_else(PoisonError::into_inner));
         let connection = open(&self.path, &tables).map_err(|error| Failure::new(error.to_string()))?;
         let clock = if beginning.is_virtual { "virtual" } else { "real" };
-        let writer = Writer::begin(connection, &tables, &self.run, (clock, beginning.seed)).and_then(|mut writer| {
-            writer.components(components(beginning.components))?;
-            Ok(writer)
-        });
+        let writer = Writer::begin(connection, &tables, (&self.run, self.keep), (clock, beginning.seed)).and_then(
+            |mut writer| {
+                writer.components(components(beginning.components))?;
+                Ok(writer)
+            },
+        );
         let writer = writer.map_err(|error| {
             Failure::new(format!("the history `{}` cannot be written: {error}", self.path.display()))
         })?;

@@ -6,7 +6,7 @@ use rusqlite::{Connection, OpenFlags};
 use saoms_api::extension::HistoryValue;
 
 use crate::HistoryError;
-use crate::writer::{check, refused};
+use crate::writer::{Value, check, refused};
 
 /// A history that is asked, also while a fleet writes it.
 #[derive(Debug)]
@@ -50,6 +50,14 @@ impl Questions {
     /// # Errors
     /// It is no question, or wrong.
     pub fn ask(&self, question: &str) -> Result<Answer, HistoryError> {
+        self.ask_with(question, &[])
+    }
+
+    /// Asks a question in SQL with a value for each `?`.
+    ///
+    /// # Errors
+    /// It is no question, or wrong.
+    pub fn ask_with(&self, question: &str, values: &[HistoryValue]) -> Result<Answer, HistoryError> {
         let wrong = |error: rusqlite::Error| match error {
             rusqlite::Error::MultipleStatement => HistoryError::NoQuestion,
             error => HistoryError::Question { message: reason(&error) },
@@ -63,7 +71,8 @@ impl Questions {
         }
         let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
         let count = columns.len();
-        let mut found = statement.query([]).map_err(wrong)?;
+        let values = rusqlite::params_from_iter(values.iter().map(Value));
+        let mut found = statement.query(values).map_err(wrong)?;
         let mut rows = Vec::new();
         while let Some(row) = found.next().map_err(wrong)? {
             rows.push(

@@ -99,15 +99,38 @@ pub(crate) const OWN: &[OwnTable] = &[
         ],
         keys: "",
     },
+    OwnTable {
+        name: "history",
+        doc: "This history",
+        columns: &[OwnColumn("id", "TEXT NOT NULL", "its name, made by chance: what copies it knows it by that")],
+        keys: ", PRIMARY KEY (id)",
+    },
 ];
+
+/// What gives a history its name, unless it has one.
+pub(crate) const NAME: &str =
+    "INSERT INTO history (id) SELECT lower(hex(randomblob(16))) WHERE NOT EXISTS (SELECT 1 FROM history)";
 
 impl OwnTable {
     pub(crate) fn statement(&self) -> String {
-        let columns = self.columns.iter().map(|OwnColumn(name, kind, _)| format!("{name} {kind}"));
-        let columns = columns.collect::<Vec<_>>().join(", ");
+        let columns = self.columns.iter().map(|OwnColumn(name, kind, doc)| (*name, *kind, *doc));
         let rowid = if self.keys.is_empty() { "" } else { ", WITHOUT ROWID" };
-        format!("CREATE TABLE IF NOT EXISTS {} ({columns}{}) STRICT{rowid}", self.name, self.keys)
+        format!("{}{}) STRICT{rowid}", table_start(self.name, self.doc, columns), self.keys)
     }
+}
+
+/// The statement that makes a table up to its last column. It says what stands in the table and in each column, so that
+/// whoever has the file alone knows it: SQLite keeps the comments of a statement.
+fn table_start<'a>(name: &str, doc: &str, columns: impl Iterator<Item = (&'a str, &'a str, &'a str)>) -> String {
+    let comment = |doc: &str| doc.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut text = format!("CREATE TABLE IF NOT EXISTS {name} (\n  -- {}\n", comment(doc));
+    let mut columns = columns.peekable();
+    while let Some((name, kind, doc)) = columns.next() {
+        let comma = if columns.peek().is_some() { "," } else { "" };
+        text.push_str(format!("  {name} {kind}{comma} -- {}", comment(doc)).trim_end_matches([' ', '-']));
+        text.push('\n');
+    }
+    text
 }
 
 const fn kind(column: &HistoryColumn) -> &'static str {
@@ -118,15 +141,17 @@ const fn kind(column: &HistoryColumn) -> &'static str {
     }
 }
 
+/// What the columns say that all tables of crates of components have.
+const RUN: &str = "the run";
+const TIME: &str = "when, in seconds of the run";
+
 /// The statements that make the table of a crate of components, and what finds its rows of a run.
 pub(crate) fn statements(table: &HistoryTable) -> [String; 2] {
-    let columns = table.columns.iter().map(|column| format!(", {} {}", column.name, kind(column)));
+    let columns = table.columns.iter().map(|column| (column.name, kind(column), column.doc));
+    let columns = [("run", "INTEGER NOT NULL", RUN), ("time_s", "REAL NOT NULL", TIME)].into_iter().chain(columns);
     let name = table.name;
     [
-        format!(
-            "CREATE TABLE IF NOT EXISTS {name} (run INTEGER NOT NULL, time_s REAL NOT NULL{}) STRICT",
-            columns.collect::<String>()
-        ),
+        format!("{}) STRICT", table_start(name, table.doc, columns)),
         format!("CREATE INDEX IF NOT EXISTS {name}_of_run ON {name} (run, time_s)"),
     ]
 }
@@ -191,7 +216,7 @@ pub fn table_docs() -> Vec<TableDoc> {
         TableDoc::of((own.name, own.doc), columns)
     });
     let others = HistoryRegistration::linked().into_iter().flat_map(|one| one.tables).map(|table| {
-        let of_all = [("run", "INTEGER", "the run"), ("time_s", "REAL", "when, in seconds of the run")];
+        let of_all = [("run", "INTEGER", RUN), ("time_s", "REAL", TIME)];
         let columns = table.columns.iter().map(|column| (column.name, kind(column), column.doc));
         TableDoc::of((table.name, table.doc), of_all.into_iter().chain(columns))
     });

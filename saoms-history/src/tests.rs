@@ -27,7 +27,7 @@ impl HistoryEvents for Told {
 
 fn begun(path: &Path, told: &Told) -> History {
     let run = HistoryRun { name: "hall".to_owned(), version: "1".to_owned(), ..HistoryRun::default() };
-    let history = History::open(path, run, Box::new(told.clone())).unwrap();
+    let history = History::open(path, run, None, Box::new(told.clone())).unwrap();
     history.begin(&Beginning { seed: u64::MAX, is_virtual: false, components: &[] }).unwrap();
     history
 }
@@ -111,11 +111,44 @@ fn rows_that_cannot_be_written_are_counted_and_told_until_they_can() {
 }
 
 #[test]
+fn a_history_has_a_name_for_good_and_says_what_stands_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, other] = ["h.db", "other.db"].map(|name| folder.path().join(name));
+    let name = |path: &Path| {
+        drop(begun(path, &Told::default()));
+        ask(path, "select id, length(id) from history")
+    };
+    let [first, again, different] = [name(&path), name(&path), name(&other)];
+    assert!(first == again && first != different, "{first:?}");
+    assert_eq!(first[0][1], HistoryValue::Integer(32));
+    let [HistoryValue::Text(statement)] = &ask(&path, "select sql from sqlite_schema where name = 'components'")[0][..]
+    else {
+        panic!("no statement");
+    };
+    assert_eq!(
+        statement,
+        "CREATE TABLE components (\n  -- A component of a run\n  run INTEGER NOT NULL, -- the run\n  \
+         component TEXT NOT NULL, -- its path, as `North/Gate`\n  id TEXT, -- its `ID`\n  \
+         period_s REAL -- its period, in seconds\n, PRIMARY KEY (run, component)) STRICT, WITHOUT ROWID"
+    );
+}
+
+#[test]
+fn a_question_may_have_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("h.db");
+    drop(begun(&path, &Told::default()));
+    let values = [HistoryValue::Integer(1), HistoryValue::Text("a\0'b".to_owned()), HistoryValue::Null];
+    let answer = Questions::open(&path).unwrap().ask_with("select run, ?2, ?3 from runs where run = ?1", &values);
+    assert_eq!(answer.unwrap().rows, [values]);
+}
+
+#[test]
 fn histories_of_others_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let [foreign, later] = ["foreign.db", "later.db"].map(|name| folder.path().join(name));
     Connection::open(&foreign).unwrap().execute_batch("create table music (title text)").unwrap();
-    let open = |path: &Path| History::open(path, HistoryRun::default(), Box::new(Told::default())).map(|_| ());
+    let open = |path: &Path| History::open(path, HistoryRun::default(), None, Box::new(Told::default())).map(|_| ());
     assert!(matches!(open(&foreign), Err(HistoryError::Foreign { .. })));
     assert!(matches!(Questions::open(&foreign), Err(HistoryError::Foreign { .. })));
     assert!(matches!(Questions::open(&folder.path().join("none.db")), Err(HistoryError::Missing { .. })));

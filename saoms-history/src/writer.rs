@@ -11,7 +11,7 @@ use saoms_core::report::RunReport;
 use crate::HistoryError;
 use crate::history::HistoryRun;
 use crate::retention::Retention;
-use crate::tables::{APPLICATION, OWN, VERSION, statements};
+use crate::tables::{APPLICATION, NAME, OWN, VERSION, statements};
 
 /// Time for which a statement waits for another program that writes.
 const BUSY: Duration = if cfg!(test) { Duration::from_millis(20) } else { Duration::from_secs(2) };
@@ -32,7 +32,8 @@ pub(crate) struct Writer {
 /// The outcome of a statement.
 pub(crate) type Written = Result<(), rusqlite::Error>;
 
-struct Value<'a>(&'a HistoryValue);
+/// A value as SQLite takes it.
+pub(crate) struct Value<'a>(pub(crate) &'a HistoryValue);
 
 impl ToSql for Value<'_> {
     fn to_sql(&self) -> rusqlite::Result<ToSqlOutput<'_>> {
@@ -63,6 +64,7 @@ pub(crate) fn open(path: &Path, tables: &[&'static HistoryTable]) -> Result<Conn
     for own in OWN {
         transaction.execute(&own.statement(), []).map_err(of_database)?;
     }
+    transaction.execute(NAME, []).map_err(of_database)?;
     for table in tables {
         for statement in statements(table) {
             transaction.execute(&statement, []).map_err(of_database)?;
@@ -102,14 +104,14 @@ pub(crate) fn refused(path: &Path, error: &rusqlite::Error) -> HistoryError {
 }
 
 impl Writer {
-    /// Begins a run.
+    /// Begins a run, whose records are removed at an age.
     pub(crate) fn begin(
         connection: Connection,
         tables: &[&'static HistoryTable],
-        run: &HistoryRun,
+        (run, keep): (&HistoryRun, Option<Duration>),
         (clock, seed): (&str, u64),
     ) -> Result<Writer, rusqlite::Error> {
-        let HistoryRun { name, composites, node, version, keep } = run;
+        let HistoryRun { name, composites, node, version } = run;
         let composites = serde_json::Value::from(composites.as_slice()).to_string();
         let begin = format!(
             "INSERT INTO runs (name, composites, node, version, clock, seed, began) VALUES (?, ?, ?, ?, ?, ?, {NOW})"

@@ -114,7 +114,7 @@ pub fn message(event: &Event, call: &EventCall, schema: &Schema) -> Result<Vec<u
         };
         fields.insert(field.name.clone(), value);
     }
-    schema.encode(&Value::Object(fields))
+    schema.encode(&Value::Object(fields)).map_err(|faults| SchemaError::new(faults.to_string()))
 }
 
 /// A value as messages are written in JSON.

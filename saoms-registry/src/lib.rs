@@ -4,10 +4,13 @@
 //! a single component.
 
 pub mod event;
+mod operation;
 pub mod registry;
 pub mod schema;
 
 use saoms_api::rule::Code;
+
+pub use operation::OperationSchema;
 
 /// Codes of diagnostics that belong to a linked crate itself: no rule over fleets may have one of them.
 pub struct ReservedCodes(pub &'static [&'static Code]);

@@ -1,10 +1,13 @@
 //! An assembly as a composite that comes to the same assembly.
 
 use std::collections::{BTreeMap, HashSet};
+use std::time::Duration;
 
 use saoms_api::Properties;
 use saoms_api::host::{PropertyValue, WriteProperties, format_duration};
-use saoms_lang::assembly::{Assembly, ComponentSpec, OF_RESTART, Restart, RunPolicy, TaskProperties, WireTarget};
+use saoms_lang::assembly::{
+    Assembly, ComponentSpec, OF_RESTART, Restart, RunPolicy, TaskProperties, WebService, Wire, WireTarget,
+};
 use saoms_lang::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
 use saoms_lang::model::{Composite, Hangup, SAOMS_NAMESPACE, SeverityRule, Version};
 use saoms_lang::project::Compilation;
@@ -30,24 +33,16 @@ pub fn expanded(compilation: &Compilation<Assembly>) -> Option<String> {
     let names = names(&paths);
     let lacks_target = |component: &ComponentSpec| {
         let references = component.class.declaration().references.iter().zip(&component.references);
-        references.into_iter().any(|(declared, wire)| !declared.optional && wire.targets.is_empty())
+        references.into_iter().any(|(declared, wire)| !declared.optional && wire.ends() == 0)
     };
     let version = match assembly.components.iter().any(lacks_target) {
         true => Version::Osoa10,
         false => like.version,
     };
     let components = assembly.components.iter().zip(&names).map(|(one, name)| {
-        let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
-            let uri = |target: &WireTarget| format!("{}/{}", names[target.component], target.service);
-            let targets: Vec<String> = wire.targets.iter().map(uri).collect();
-            let node =
-                NewElement::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "));
-            match wire.deadline {
-                None => node,
-                Some(deadline) => node.with("s:deadline", format_duration(deadline)).declare("s", SAOMS_NAMESPACE),
-            }
-        });
-        component(one, name, references)
+        let services = services(&one.web);
+        let references = one.references.iter().filter(|wire| wire.ends() > 0).map(|wire| reference(wire, &names));
+        component(one, name, services.into_iter().chain(references))
     });
     let mut root = run_settings(root(like), &assembly.run)
         .children(severities(like, &compilation.diagnostics))
@@ -57,6 +52,58 @@ pub fn expanded(compilation: &Compilation<Assembly>) -> Option<String> {
     let mut text = String::new();
     root.write(0, &mut text);
     Some(text)
+}
+
+/// The services that a component offers over the web, each with its paths.
+fn services(offered: &[WebService]) -> Vec<NewElement> {
+    let mut names: Vec<&str> = Vec::new();
+    for one in offered {
+        if !names.contains(&one.service.as_str()) {
+            names.push(&one.service);
+        }
+    }
+    let service = |name: &&str| {
+        let all: Vec<&WebService> = offered.iter().filter(|one| one.service == *name).collect();
+        let binding = |(one, number): (&&WebService, usize)| {
+            let name = (all.len() > 1).then(|| format!("{name}{number}"));
+            NewElement::new("binding.rest").maybe("name", name).with("uri", one.path.to_string())
+        };
+        let node = NewElement::new("service").with("name", *name).children(all.iter().zip(1..).map(binding));
+        with_deadline(node, all.first().and_then(|one| one.deadline))
+    };
+    names.iter().map(service).collect()
+}
+
+/// A reference with its targets in the fleet and on the web.
+fn reference(wire: &Wire, names: &[String]) -> NewElement {
+    let uri = |target: &WireTarget| format!("{}/{}", names[target.component], target.service);
+    let targets = wire.targets.iter().map(uri);
+    let node = NewElement::new("reference").with("name", wire.reference.as_str());
+    // In SCA 1.1, a reference with bindings has no `target`; several bindings have names.
+    let node = match wire.web.is_empty() {
+        true => node.with("target", targets.collect::<Vec<_>>().join(" ")),
+        false => {
+            let in_fleet = targets.map(|uri| ("binding.sca", uri));
+            let on_web = wire.web.iter().map(|target| ("binding.rest", target.address.written()));
+            let name = |number: usize| (wire.ends() > 1).then(|| format!("{}{number}", wire.reference));
+            let bindings = in_fleet.chain(on_web).zip(1..);
+            node.children(
+                bindings
+                    .map(|((kind, uri), number)| NewElement::new(kind).maybe("name", name(number)).with("uri", uri)),
+            )
+        }
+    };
+    // A token has one server, and all bindings of the reference lead to it.
+    let token = wire.web.first().and_then(|target| target.token_env.as_deref());
+    let node = token.into_iter().fold(node, |node, name| node.with("s:tokenEnv", name).declare("s", SAOMS_NAMESPACE));
+    with_deadline(node, wire.deadline)
+}
+
+fn with_deadline(node: NewElement, deadline: Option<Duration>) -> NewElement {
+    match deadline {
+        None => node,
+        Some(deadline) => node.with("s:deadline", format_duration(deadline)).declare("s", SAOMS_NAMESPACE),
+    }
 }
 
 /// The severities that the composite sets.
@@ -134,7 +181,7 @@ fn names(paths: &[&str]) -> Vec<String> {
 }
 
 /// A component of a class, with these references.
-fn component(component: &ComponentSpec, name: &str, references: impl IntoIterator<Item = NewElement>) -> NewElement {
+fn component(component: &ComponentSpec, name: &str, parts: impl IntoIterator<Item = NewElement>) -> NewElement {
     let node = NewElement::new("component").with("name", name);
     let node = match component.path == name {
         true => node,
@@ -148,7 +195,7 @@ fn component(component: &ComponentSpec, name: &str, references: impl IntoIterato
         "" => node,
         name => node.with("s:node", name).declare("s", SAOMS_NAMESPACE),
     };
-    node.child(implementation(component)).children(valued(component)).children(references).children(loops(component))
+    node.child(implementation(component)).children(valued(component)).children(parts).children(loops(component))
 }
 
 /// The attributes that name the class of a component.

@@ -15,8 +15,10 @@ mod query;
 mod report;
 mod run;
 mod schema;
+mod signals;
 mod simulate;
 mod tips;
+mod view;
 mod why;
 
 use std::io::{self, Write};
@@ -33,6 +35,7 @@ Exit codes:
   0    done
   1    failed, a check found a difference, or the output could not be written
   2    the input is wrong: a composite, a value, the command line; nothing was started
+  3    `saoms plan` has found changes
   130  ended by Ctrl-C, SIGTERM or SIGHUP
 The help of each command describes its own exit codes.";
 
@@ -56,6 +59,7 @@ enum Command {
     Why(why::WhyArguments),
     Report(report::ReportArguments),
     Query(query::QueryArguments),
+    View(view::ViewArguments),
     Ps(control::PsArguments),
     Status(control::StatusArguments),
     Top(control::TopArguments),
@@ -67,6 +71,8 @@ enum Command {
     Start(control::StartArguments),
     Stop(control::StopArguments),
     Set(control::SetArguments),
+    Plan(control::PlanArguments),
+    Apply(control::ApplyArguments),
     Call(control::CallArguments),
     Pause(control::PauseArguments),
     Resume(control::ResumeArguments),
@@ -96,6 +102,7 @@ pub(crate) fn execute() -> Exit {
         Command::Why(arguments) => why::why(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Query(arguments) => query::query(&arguments),
+        Command::View(arguments) => view::view(&arguments),
         Command::Ps(arguments) => control::ps(&arguments),
         Command::Status(arguments) => control::status(&arguments),
         Command::Top(arguments) => control::top(&arguments),
@@ -107,6 +114,8 @@ pub(crate) fn execute() -> Exit {
         Command::Start(arguments) => control::start(&arguments),
         Command::Stop(arguments) => control::stop(&arguments),
         Command::Set(arguments) => control::set(&arguments),
+        Command::Plan(arguments) => control::plan(&arguments),
+        Command::Apply(arguments) => control::apply(&arguments),
         Command::Call(arguments) => control::call(&arguments),
         Command::Pause(arguments) => control::pause(&arguments),
         Command::Resume(arguments) => control::resume(&arguments),

@@ -47,7 +47,7 @@ pub(crate) enum ReportCommand {
 }
 
 /// What the report of a run holds beside, by the names of its fields: only the program knew it.
-const UNKNOWN: [&str; 8] = [
+const UNKNOWN: [&str; 9] = [
     "periods",
     "components: class, executions, missed, late_us, deadline_misses, slow, restarts, replaced, failures, dropped, messages",
     "the sections of components",
@@ -55,6 +55,7 @@ const UNKNOWN: [&str; 8] = [
     "adaptation: throughput",
     "votes and standstill",
     "outcome.status",
+    "recording",
     "trace_hash",
 ];
 

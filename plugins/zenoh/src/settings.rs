@@ -15,6 +15,9 @@ const PATIENCE: u64 = 900;
 /// Time without a sign of life after which a link is given up, in milliseconds.
 const LEASE: u64 = 1_000;
 
+/// Batches of 64 kB that wait to be sent over a link, at most; more than 16 Zenoh does not allow.
+const MOST_BATCHES: usize = 16;
+
 /// What the program says when it opens a session.
 #[derive(Deserialize)]
 pub(super) struct Settings {
@@ -156,6 +159,9 @@ impl Settings {
         set("scouting/gossip/enabled", json!(false))?;
         set("scouting/delay", json!(0))?;
         set("transport/link/tx/lease", json!(LEASE))?;
+        // Room for a burst. What finds none waits for 1 ms, and is dropped then: without that wait, a program that sends
+        // as much as the machine carries would lose most of it.
+        set("transport/link/tx/queue/size/data", json!(MOST_BATCHES))?;
         let mut users = None;
         if let (Some(user), Some(password)) = (&self.user, &self.password) {
             set("transport/auth/usrpwd/user", json!(user))?;

@@ -36,7 +36,7 @@ impl Loops {
         self.for_each(|name, instance| {
             let state = instance.save()?;
             if !state.is_nothing() {
-                saved.loops.push(SavedLoop { name: name.to_owned(), state: state.bytes().to_vec() });
+                saved.loops.push(SavedLoop { name: name.to_owned(), state: state.into_bytes() });
             }
             Ok(())
         })?;

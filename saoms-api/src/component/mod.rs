@@ -305,7 +305,8 @@ pub trait Component: Derived + Send + Sized + 'static {
     }
 
     /// What an operator wants to know of the component now, as named values: asked between two executions when somebody
-    /// looks at the running fleet (`saoms status`). What the program counts itself (executions, failures, messages) is
+    /// looks at the running fleet (`saoms status`), once a second for its plots, and while a run is recorded
+    /// (`saoms run --report`). What the program counts itself (executions, failures, messages) is
     /// not among them. It is quick, and changes nothing. Two values of the same name are a failure.
     ///
     /// ```

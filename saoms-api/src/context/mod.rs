@@ -1,6 +1,7 @@
 //! The view that a component has of the fleet.
 
 mod journal;
+mod kept;
 mod log;
 
 use std::collections::BTreeMap;
@@ -13,6 +14,7 @@ use crate::{
     StopFunction, Subscription, Time, Topic,
 };
 
+pub use kept::KeptByOther;
 pub use log::Level;
 
 /// Everything that reaches a component from outside: its messages, time, chance, the log, other components.
@@ -344,6 +346,14 @@ impl<'a> Context<'a> {
     /// runs beside it may have lost its memory then.
     pub fn kept_by_earlier_program(&self) -> bool {
         self.host.kept_by_earlier_program()
+    }
+
+    /// What other components of its class and site have [kept](Context::keep) that ended, or got new instances, in the
+    /// change of the fleet with which this instance began: whoever takes over a part of their work goes on from that.
+    /// None of them has executed since, and if the change is taken back, they go on as they were. A component of a
+    /// library gets nothing.
+    pub fn kept_by_others(&self) -> Vec<KeptByOther<'_>> {
+        self.host.kept_by_others()
     }
 
     /// True in the `initialize` of a component that takes the place of another one and goes on from what that

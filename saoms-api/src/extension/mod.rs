@@ -14,10 +14,13 @@
 //! - [`RouterClass`]: a class whose components are routers of networks,
 //! - [`RemoteProxy`]: how services of an interface are called in other programs without waiting,
 //! - [`ServiceEffects`]: which operations of an interface have effects outside of the program,
+//! - [`ChangeLimit`]: what may not change in a fleet while it runs (`saoms apply`),
+//! - [`ChangeConsequence`]: what follows of such a change beside its components (`saoms plan`),
 //! - [`FailureNotice`]: what a fleet is told of a component that failed and lost what it knew.
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
 
+mod changes;
 mod curves;
 mod dashboard;
 mod effects;
@@ -34,8 +37,9 @@ mod summary;
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
+pub use changes::{ChangeConsequence, ChangeLimit};
 pub use curves::{Curve, CurvesRegistration, RunCurves};
-pub use dashboard::DashboardView;
+pub use dashboard::{DashboardLine, DashboardPlot, DashboardState, DashboardView, Summary};
 pub use effects::ServiceEffects;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};

@@ -39,8 +39,8 @@ pub use visible::{Visible, is_invisible, one_line, shorten, shown};
 pub use xml::escaped;
 
 use crate::{
-    CallError, Cause, Chance, Departed, Failure, KnownPublisher, Level, Record, Region, ReportValue, StopFunction,
-    Time, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, KeptByOther, KnownPublisher, Level, Record, Region, ReportValue,
+    StopFunction, Time, Value, Work,
 };
 
 /// The lowest bit of the number of a target in the handle of a reference; the bits below are the place of the reference
@@ -143,6 +143,10 @@ pub trait Host {
     /// See [`Context::kept_by_earlier_program`](crate::Context::kept_by_earlier_program).
     fn kept_by_earlier_program(&self) -> bool {
         false
+    }
+    /// See [`Context::kept_by_others`](crate::Context::kept_by_others).
+    fn kept_by_others(&self) -> Vec<KeptByOther<'_>> {
+        Vec::new()
     }
     /// See [`Context::goes_on`](crate::Context::goes_on).
     fn goes_on(&self) -> bool {

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 const NAMES: &[&str] = &[
     "Adaptation", "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Departed", "Effector",
-    "Entries", "Entry", "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "KnownPublisher", "Level",
-    "Loop", "LoopClass", "Loops", "Message", "Messages", "Own", "Place", "Properties", "PropertyField", "Publisher",
-    "Record", "Recordable", "Region", "ReportValue", "Saved", "SavedLoops", "Secret", "SimpleLoop", "StopFunction",
-    "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value", "Work", "builtin_interfaces",
-    "event", "extension", "fleet_rules!", "host", "info!", "interface", "plugin!", "record!", "rule", "warn!",
+    "Entries", "Entry", "Extras", "Failure", "Field", "Finding", "Header", "KeptByOther", "Knowledge",
+    "KnownPublisher", "Level", "Loop", "LoopClass", "Loops", "Message", "Messages", "Own", "Place", "Properties",
+    "PropertyField", "Publisher", "Record", "Recordable", "Region", "ReportValue", "Saved", "SavedLoops", "Secret",
+    "SimpleLoop", "StopFunction", "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value",
+    "Work", "builtin_interfaces", "event", "extension", "fleet_rules!", "host", "info!", "interface", "plugin!",
+    "record!", "rule", "warn!",
 ];
 
 /// The names that the text of `lib.rs` and the exported macros of the crate make public, without hidden ones.

@@ -1,7 +1,47 @@
 //! The view of a fleet of robots in the dashboard: the map with robots, luggage, grants and conflicts, and orders. It
 //! runs in a browser, and knows no more than the topics and the status of the fleet say.
 
-use saoms_api::extension::{DashboardView, submit};
+use saoms_api::extension::{DashboardLine, DashboardPlot, DashboardState, DashboardView, Summary, submit};
+
+const fn state(message: &'static str, fields: &'static [&'static str]) -> DashboardState {
+    DashboardState { message, fields }
+}
+
+/// Robots say their numbers.
+const ROBOTS: &[&str] = &["robot"];
+
+const fn plot(title: &'static str, unit: &'static str, lines: &'static [DashboardLine]) -> DashboardPlot {
+    DashboardPlot { title, unit, lines }
+}
+
+const fn line(title: &'static str, field: &'static str, by: Summary, of: &'static [&'static str]) -> DashboardLine {
+    DashboardLine { title, field, by, of }
+}
+
+const PLOTS: &[DashboardPlot] = &[
+    // Worlds count what was delivered; without one, the robots do.
+    plot(
+        "Pieces delivered in a minute",
+        "",
+        &[line("over the last minute", "delivered", Summary::PerMinute, &["collisions", "robot"])],
+    ),
+    plot(
+        "Open luggage",
+        "",
+        &[
+            // Worlds count it; without one, the masters do.
+            line("open", "open", Summary::Sum, &["collisions", "luggage"]),
+            // Masters list their luggage.
+            line("no robot has it yet", "waiting", Summary::Sum, &["luggage"]),
+        ],
+    ),
+    plot("Robots that wait for others", "", &[line("robots", "waits_for_robot", Summary::Count, ROBOTS)]),
+    plot(
+        "Battery",
+        "%",
+        &[line("mean", "battery", Summary::Mean, ROBOTS), line("least", "battery", Summary::Least, ROBOTS)],
+    ),
+];
 
 submit! {
     DashboardView {
@@ -14,6 +54,14 @@ submit! {
             ("panel.js", include_str!("panel.js")),
             ("view.css", include_str!("view.css")),
         ],
+        states: &[
+            state("Position", &["block", "next", "wanted", "priority"]),
+            state("Area", &["width", "height", "blocked"]),
+            state("Territory", &["zone", "corner", "width", "height"]),
+            state("Grant", &["robot", "steps", "waits_for", "wanted"]),
+            state("RobotList", &["charger"]),
+        ],
+        plots: PLOTS,
     }
 }
 

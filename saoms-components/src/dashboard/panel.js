@@ -1,6 +1,6 @@
 // What stands beside the map: orders, the chosen robot, conflicts, and all robots in a table.
 
-import { h, keyed, shown, text, time } from "/assets/dom.js";
+import { Rows, h, keyed, shown, text, time } from "/assets/dom.js";
 import { place, same } from "./state.js";
 
 /** A block as people write it: `(3,1)`, `3,1` or `3 1`. */
@@ -19,7 +19,8 @@ export function sending(floor, orders, map) {
     kind: "primary",
     title: "saoms send \"luggage (3,1) to (3,10)\"",
     order: send,
-    isDone: ({ ends, known }) => floor.luggage.some((one) => !known.has(one.number) && same(one.from, ends[0]) && same(one.to, ends[1])) || floor.fleet.state.summaries.join() !== known.summaries,
+    // It is on the floor, or so soon delivered that only the counts show it.
+    isDone: ({ ends, known, summaries }) => floor.luggage.some((one) => !known.has(one.number) && same(one.from, ends[0]) && same(one.to, ends[1])) || floor.fleet.state.summaries.join() !== summaries,
   });
   const hint = h("p", { class: "muted hint" }, "Write blocks, or choose a field and click them on the map.");
   const form = h("form", { class: "sending", onsubmit: (event) => (event.preventDefault(), button.click()) }, from, h("span", { class: "muted" }, "to"), to, button);
@@ -33,13 +34,13 @@ export function sending(floor, orders, map) {
       return null;
     }
     const known = new Set(floor.luggage.map((one) => one.number));
-    known.summaries = floor.fleet.state.summaries.join();
+    const summaries = floor.fleet.state.summaries.join();
     const answer = await orders.line(`luggage ${place(ends[0])} to ${place(ends[1])}`);
     if (answer === null) return null;
     from.value = to.value = "";
     last = null;
     mark();
-    return { ends, known };
+    return { ends, known, summaries };
   }
 
   function mark() {
@@ -161,10 +162,11 @@ export function robots(floor, choose) {
     const all = [...floor.robots.values()];
     const wanted = filter ? all.filter((robot) => `${robot.path} ${robot.state} ${robot.job ?? ""}`.toLowerCase().includes(filter)) : all;
     text(count, wanted.length === all.length ? all.length : `${wanted.length} of ${all.length}`);
-    keyed(body, wanted, (robot) => robot.path, make, show);
+    rows.update(wanted, (robot) => robot.path);
   }
 
-  return { element, update };
+  const rows = new Rows(body, make, show);
+  return { element, update, close: () => rows.close() };
 }
 
 function classed(element, value) {

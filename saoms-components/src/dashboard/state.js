@@ -4,6 +4,8 @@
 const BROKEN = new Set(["broken", "stranded", "gone"]);
 /** Conflicts that are listed after they ended. */
 const KEPT = 40;
+/** Seconds of a run that has ended after which what is shown does not follow from what was. */
+const JUMP_S = 10;
 
 const at = (pair) => (Array.isArray(pair) ? { x: pair[0], y: pair[1] } : (pair ?? null));
 export const same = (a, b) => a !== null && b !== null && a.x === b.x && a.y === b.y;
@@ -21,6 +23,8 @@ export class Floor {
     this.zones = [];
     this.grants = new Map();
     this.area = null;
+    /** The time that was shown last. */
+    this.seen = 0;
     /** The topic of positions of the site that is shown. */
     this.site = null;
   }
@@ -42,6 +46,10 @@ export class Floor {
 
   update() {
     this.site ??= this.sites()[0] ?? null;
+    const now = this.fleet.state.time_s;
+    // In a run that has ended, somebody may go to another moment: nobody saw what came between.
+    if (this.fleet.isFinished && (now < this.seen || now > this.seen + JUMP_S)) [this.conflicts, this.past] = [new Map(), []];
+    this.seen = now;
     const positions = new Map(this.#messages("Position").map((one) => [one.component, one.message]));
     const chargers = new Map(this.#messages("RobotList").map((one) => [one.component, one.message?.charger]));
     const hasSites = this.sites().length > 1;
@@ -170,22 +178,4 @@ export class Floor {
     }
     return block ? `it holds or wants ${place(block)}` : "it is in the way";
   }
-}
-
-/** Pieces that were delivered: the world counts them, or else the robots. */
-export function delivered(fleet) {
-  let [world, robots, isWorld] = [0, 0, false];
-  for (const { values } of fleet.components.values()) {
-    if (!values || typeof values.delivered !== "number") continue;
-    if ("collisions" in values) [world, isWorld] = [world + values.delivered, true];
-    else robots += values.delivered;
-  }
-  return isWorld ? world : robots;
-}
-
-/** The sum of a value of all components that have it. */
-export function total(fleet, name) {
-  let sum = 0;
-  for (const { values } of fleet.components.values()) if (typeof values?.[name] === "number") sum += values[name];
-  return sum;
 }

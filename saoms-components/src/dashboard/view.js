@@ -3,53 +3,10 @@
 import { h, text } from "/assets/dom.js";
 import { FloorMap } from "./draw.js";
 import { chosen, conflicts, robots, sending } from "./panel.js";
-import { Floor, delivered, total } from "./state.js";
+import { Floor } from "./state.js";
 
 /** Robots from which on grants and chargers are left out unless they are asked for. */
 const MANY = 200;
-
-const every = (fleet, of) => [...fleet.components.values()].filter((one) => typeof one.values?.robot === "number").map(of);
-
-/** Deliveries in a minute, over the last minute. */
-function throughput() {
-  const seen = [];
-  return (fleet) => {
-    const now = { time_s: fleet.state.time_s, count: delivered(fleet) };
-    seen.push(now);
-    while (seen.length > 2 && seen[1].time_s < now.time_s - 60) seen.shift();
-    const seconds = now.time_s - seen[0].time_s;
-    return seconds >= 10 ? Math.round(((now.count - seen[0].count) / seconds) * 600) / 10 : NaN;
-  };
-}
-
-export const figures = [
-  { title: "Pieces delivered in a minute", lines: [{ name: "throughput", title: "over the last minute", value: throughput() }] },
-  {
-    title: "Open luggage",
-    lines: [
-      { name: "open", title: "open", value: (fleet) => total(fleet, "open") },
-      { name: "unclaimed", title: "no robot has it yet", value: (fleet) => every(fleet, () => 0).length && waiting(fleet) },
-    ],
-  },
-  { title: "Robots that wait for others", lines: [{ name: "waits", title: "robots", value: (fleet) => every(fleet, (one) => one.values.waits_for_robot).filter((one) => one !== null).length }] },
-  {
-    title: "Battery",
-    format: (value) => `${Math.round(value)} %`,
-    lines: [
-      { name: "battery_mean", title: "mean", value: (fleet) => mean(every(fleet, (one) => one.values.battery)) },
-      { name: "battery_least", title: "least", value: (fleet) => Math.min(100, ...every(fleet, (one) => one.values.battery)) },
-    ],
-  },
-];
-
-const mean = (values) => (values.length ? values.reduce((sum, one) => sum + one, 0) / values.length : NaN);
-
-/** Luggage that no robot has, of the masters, which list their pieces. */
-function waiting(fleet) {
-  let count = 0;
-  for (const { values } of fleet.components.values()) if (Array.isArray(values?.luggage)) count += values.waiting ?? 0;
-  return count;
-}
 
 /** True for a fleet with robots. */
 export const shows = (fleet) => fleet.topicList.some((topic) => topic.message === "Position");
@@ -80,7 +37,7 @@ export function view({ fleet, orders, open, follow }) {
   }
   const legend = h("p", { class: "legend" }, ...[["free", "free"], ["way", "goes to luggage"], ["carries", "carries"], ["charge", "charges"], ["off", "asleep"], ["broken", "stopped, or needs help"]].map(([name, label]) => h("span", { class: `robot-key ${name}` }, label)));
   const keys = h("p", { class: "muted keys" }, "Keys on the map: arrows move it, + and − change its size, 0 shows all, n and p choose a robot.");
-  const element = h("div", { class: "floor" }, h("section", { class: "panel map" }, h("div", { class: "bar" }, counts, tools), map.canvas, legend, keys), h("div", { class: "side" }, place, sent.element, met.element, table.element));
+  const element = h("div", { class: "floor" }, h("section", { class: "panel map" }, h("div", { class: "bar" }, counts, tools), map.canvas, legend, keys), h("div", { class: "side" }, place, fleet.isFinished ? null : sent.element, met.element, table.element));
 
   function wanted() {
     const types = ["Position", "Area", "Territory"];
@@ -100,12 +57,13 @@ export function view({ fleet, orders, open, follow }) {
     map.redraw();
   }
 
-  let last = 0;
+  let [last, later] = [-Infinity, null];
   function update() {
     floor.update();
     map.redraw();
     card?.update();
-    if (performance.now() - last < 400) return;
+    const passed = performance.now() - last;
+    if (passed < 400) return (later ??= setTimeout(() => ((later = null), update()), 400 - passed));
     last = performance.now();
     const stopped = [...floor.robots.values()].filter((robot) => robot.isBroken).length;
     const unclaimed = floor.luggage.filter((one) => one.waits).length;
@@ -119,5 +77,5 @@ export function view({ fleet, orders, open, follow }) {
     table.update();
   }
 
-  return { element, update, every: 100, wants: { topics: wanted() }, close: () => map.close() };
+  return { element, update, every: 100, wants: { topics: wanted() }, close: () => (clearTimeout(later), map.close(), table.close()) };
 }

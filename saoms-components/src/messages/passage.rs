@@ -67,6 +67,26 @@ impl Territory {
         };
         Block::new(within(block.x, corner.x, width), within(block.y, corner.y, height))
     }
+
+    /// The first and the last block that two zones share.
+    pub(crate) fn shared(&self, other: &Territory) -> Option<(Block, Block)> {
+        let last = |zone: &Territory| {
+            let end = |from: i32, length: u32| from.saturating_add_unsigned(length.saturating_sub(1));
+            Block::new(end(zone.corner.x, zone.width), end(zone.corner.y, zone.height))
+        };
+        let (ends, other_ends) = (last(self), last(other));
+        let from = Block::new(self.corner.x.max(other.corner.x), self.corner.y.max(other.corner.y));
+        let to = Block::new(ends.x.min(other_ends.x), ends.y.min(other_ends.y));
+        (from.x <= to.x && from.y <= to.y).then_some((from, to))
+    }
+
+    /// The number of blocks that two zones share.
+    pub(crate) fn shares(&self, other: &Territory) -> u64 {
+        self.shared(other).map_or(0, |(from, to)| {
+            let length = |from: i32, to: i32| u64::from(to.abs_diff(from)) + 1;
+            length(from.x, to.x).saturating_mul(length(from.y, to.y))
+        })
+    }
 }
 
 /// Distance from a zone within which robots tell it where they are, in blocks.
@@ -184,9 +204,15 @@ pub enum Standing {
     Enters,
 }
 
+/// The address of a robot: the place of messages that are for it alone, which is no block of a map. Its column is the
+/// number of the robot, and its row 0.
+pub const fn address(robot: u32) -> Block {
+    Block::new(robot.cast_signed(), 0)
+}
+
 /// The steps that a zone granted to a robot, and that the robot did not release.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Message)]
-#[message(key = "link", place = "block", speaker("zone", instead = "stop the zone, if it has to grant nothing"))]
+#[message(key = "link", place = "address", speaker("zone", instead = "stop the zone, if it has to grant nothing"))]
 pub struct Grant {
     /// Number of the robot and of the zone, in one number.
     pub link: u64,
@@ -201,8 +227,8 @@ pub struct Grant {
     /// Number of the robot's newest request that the zone took in. The highest number of all says that somebody took
     /// the robot off the floor, so that it holds nothing any more, and has to stop.
     pub heard: u64,
-    /// Position of the robot, as the zone knows it.
-    pub block: Block,
+    /// Address of the robot ([`address`]): it receives grants of its own address alone, wherever it is.
+    pub address: Block,
     /// The steps, in their order.
     pub steps: Vec<Step>,
     /// Robot that holds the block where this one waits to go; 0 if it does not wait for a robot.

@@ -54,6 +54,10 @@ pub struct RobotKnowledge {
     /// Block of its charger.
     #[entry]
     pub charge_block: Block,
+    /// Block of the charger that its properties give it.
+    pub(super) given_charger: Block,
+    /// True if they give it another one than its predecessor had: what is known of that is over.
+    pub(super) has_new_charger: bool,
     /// Battery of the robot.
     pub battery: Battery,
     /// Battery level of the robot. It counts by itself; a loop that measures the battery sets it.
@@ -100,6 +104,8 @@ pub struct RobotKnowledge {
     /// True if an operator stopped it: it gives no orders to its hardware until it is released.
     #[entry(quiet)]
     pub(super) stopped: bool,
+    /// True if it is to leave the fleet: it sleeps once it has finished, and does not wake.
+    pub(super) leaving: bool,
     /// True if the robot broke and does nothing any more.
     pub shut_down: bool,
     /// Robot that it substitutes, if it was woken for that.
@@ -194,6 +200,8 @@ impl RobotKnowledge {
             wanted: None,
             orders: Orders::default(),
             charge_block,
+            given_charger: charge_block,
+            has_new_charger: false,
             charge: battery.percent(),
             level_before: battery.percent(),
             battery,
@@ -210,6 +218,7 @@ impl RobotKnowledge {
             visits: false,
             variables: Variables::default(),
             stopped: false,
+            leaving: false,
             shut_down: false,
             stands_in_for: None,
             relieved: false,
@@ -255,6 +264,16 @@ impl RobotKnowledge {
     /// True if it is at its charger.
     pub fn is_at_charger(&self) -> bool {
         self.block == self.charge_block && self.next == self.charge_block
+    }
+
+    /// True if it has finished what it had begun, and is where it can be left: it sleeps at its charger, is broken, or
+    /// is not on the floor.
+    pub(super) fn has_finished(&self) -> bool {
+        if self.shut_down || self.gone || !self.hardware.has_entered() {
+            return true;
+        }
+        let has_work = self.job.is_some() || self.untold.is_some() || self.variables.has_luggage || self.offers_help;
+        self.variables.asleep && self.is_at_charger() && !has_work && self.hardware.running().is_none()
     }
 
     /// What it waits for, if it takes no work by itself: nothing waits for it that it knows of. It may still charge.

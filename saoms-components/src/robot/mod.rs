@@ -9,6 +9,7 @@
 mod actions;
 mod battery;
 mod catch_up;
+mod change_limit;
 pub mod classic;
 mod console;
 mod hardware_client;
@@ -28,7 +29,7 @@ mod upkeep;
 mod zone_client;
 
 use saoms_api::host::prefetch;
-use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Subscription, Time, interface};
+use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Subscription, Time, Work, interface};
 
 use crate::console::Timestamp;
 use crate::hardware::{Hardware, Progress};
@@ -130,7 +131,7 @@ impl Component for Robot {
         knowledge.policy = properties.policy;
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;
-        knowledge.stopped = properties.stopped;
+        (knowledge.stopped, knowledge.leaving) = (properties.stopped, properties.leaving);
         Ok(Robot {
             knowledge,
             loops: Loops::default(),
@@ -148,7 +149,7 @@ impl Component for Robot {
         self.topics = Topics::subscribe(context)?;
         if self.knowledge.policy == Policy::Safe {
             self.knowledge.leases = context.publish(&LEASE)?;
-            self.knowledge.zones = ZoneClient::new(context)?.map(Box::new);
+            self.knowledge.zones = ZoneClient::new(context, self.knowledge.number)?.map(Box::new);
         }
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
@@ -163,64 +164,15 @@ impl Component for Robot {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        // Both are needed all over; among thousands of robots nothing of them is left in the processor's cache.
-        prefetch(&*self.knowledge);
-        self.loops.prefetch();
-        self.knowledge.hear_strain(self.drains, self.outages, context);
-        let Some(gone) = self.knowledge.hear_gone(&self.topics, context) else {
-            return self.knowledge.leave_floor(context);
-        };
-        if self.knowledge.shut_down {
-            self.knowledge.hear_zones(context)?;
-            self.knowledge.ask_zones(context)?;
-            self.knowledge.repeat_state(context)?;
-            return self.knowledge.stop_for_good(context);
-        }
-        let entered = self.enter(context)?;
-        if self.knowledge.gone {
-            return Ok(());
-        }
-        if entered {
-            context.console(format_args!(
-                "Execution {} of {} starts at {}",
-                context.execution(),
-                self.knowledge.name,
-                Timestamp::now(context)
-            ));
-        }
-        let was_critical = self.knowledge.variables.critical;
-        self.knowledge.hear(&mut self.topics, context)?;
-        if entered {
-            self.knowledge.hear_zones(context)?;
-            if self.knowledge.zones.as_ref().is_some_and(|zones| zones.is_off_floor()) {
-                return self.knowledge.leave_floor(context);
-            }
-        }
-        self.knowledge.begin_execution(context)?;
-        self.loops.monitor(&mut *self.knowledge, context)?;
-        self.knowledge.forget_gone(&gone);
-        if entered {
-            self.knowledge.poll_unwatched(&self.loops, context)?;
-            self.knowledge.measure();
-            self.knowledge.show_lists(context);
-            let in_charge = self.knowledge.variables.in_charge;
-            self.loops.adapt(&mut *self.knowledge, context)?;
-            self.knowledge.carry_out(&self.loops, context)?;
-            self.knowledge.end_execution(was_critical, context)?;
-            self.knowledge.ask_zones(context)?;
-            self.knowledge.repeat_state(context)?;
-            self.knowledge.renew_lease(context)?;
-            self.knowledge.note_waiting();
-            // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
-            if in_charge || !self.knowledge.variables.in_charge {
-                self.knowledge.show_battery(context);
-            }
+        self.act(context)?;
+        if self.knowledge.leaving {
+            context.vote(if self.knowledge.has_finished() { Work::Done } else { Work::Open });
         }
         Ok(())
     }
 
     fn update(&mut self, properties: RobotProperties) -> Result<(), Failure> {
-        self.knowledge.stopped = properties.stopped;
+        (self.knowledge.stopped, self.knowledge.leaving) = (properties.stopped, properties.leaving);
         Ok(())
     }
 
@@ -273,6 +225,64 @@ impl Robot {
     /// Knowledge of the robot, for components that extend it.
     pub fn knowledge(&self) -> &RobotKnowledge {
         &self.knowledge
+    }
+
+    /// One execution.
+    fn act(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        // Both are needed all over; among thousands of robots nothing of them is left in the processor's cache.
+        prefetch(&*self.knowledge);
+        self.loops.prefetch();
+        self.knowledge.hear_strain(self.drains, self.outages, context);
+        let Some(gone) = self.knowledge.hear_gone(&self.topics, context) else {
+            return self.knowledge.leave_floor(context);
+        };
+        if self.knowledge.shut_down {
+            self.knowledge.hear_zones(context);
+            self.knowledge.ask_zones(context)?;
+            self.knowledge.repeat_state(context)?;
+            return self.knowledge.stop_for_good(context);
+        }
+        let entered = self.enter(context)?;
+        if self.knowledge.gone {
+            return Ok(());
+        }
+        if entered {
+            context.console(format_args!(
+                "Execution {} of {} starts at {}",
+                context.execution(),
+                self.knowledge.name,
+                Timestamp::now(context)
+            ));
+        }
+        let was_critical = self.knowledge.variables.critical;
+        self.knowledge.hear(&mut self.topics, context)?;
+        if entered {
+            self.knowledge.hear_zones(context);
+            if self.knowledge.zones.as_ref().is_some_and(|zones| zones.is_off_floor()) {
+                return self.knowledge.leave_floor(context);
+            }
+        }
+        self.knowledge.begin_execution(context)?;
+        self.loops.monitor(&mut *self.knowledge, context)?;
+        self.knowledge.forget_gone(&gone);
+        if entered {
+            self.knowledge.poll_unwatched(&self.loops, context)?;
+            self.knowledge.measure();
+            self.knowledge.show_lists(context);
+            let in_charge = self.knowledge.variables.in_charge;
+            self.loops.adapt(&mut *self.knowledge, context)?;
+            self.knowledge.carry_out(&self.loops, context)?;
+            self.knowledge.end_execution(was_critical, context)?;
+            self.knowledge.ask_zones(context)?;
+            self.knowledge.repeat_state(context)?;
+            self.knowledge.renew_lease(context)?;
+            self.knowledge.note_waiting();
+            // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
+            if in_charge || !self.knowledge.variables.in_charge {
+                self.knowledge.show_battery(context);
+            }
+        }
+        Ok(())
     }
 
     /// Registers the robot with the world and learns the map, or learns what the world did while the robot was out;

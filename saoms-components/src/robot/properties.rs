@@ -62,6 +62,10 @@ pub struct RobotProperties {
     /// sets it, and `saoms release` removes it.
     #[property(default = false, live)]
     pub(crate) stopped: bool,
+    /// True if the robot is to leave the fleet: it finishes its job, goes to its charger and stays there asleep,
+    /// whoever wakes it. A change of the fleet sets it for robots that it removes.
+    #[property(default = false, live)]
+    pub(crate) leaving: bool,
     /// Rules by which the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the
     /// manual's.
     #[property(default = "safe")]

@@ -16,7 +16,7 @@ use crate::validation::Validate;
 const HEARING: u32 = 8;
 
 /// Number of blocks that a robot drives before its region of hearing follows.
-const SLACK: u32 = 4;
+const SLACK: u32 = 2;
 
 /// Number of blocks of a map up to which a robot hears all: a region costs more than it saves there.
 pub(crate) const HEARD: usize = 82 * 82;

@@ -265,7 +265,7 @@ impl Routes {
         } else {
             self.cost(place, from, to)
         };
-        if cost == UNREACHABLE { UNREACHABLE } else { cost.div_ceil(MOVE) }
+        if cost == UNREACHABLE { UNREACHABLE } else { cost / MOVE }
     }
 
     /// True if there is a way from one block to another once the robots have started again that failed and are about

@@ -1,5 +1,6 @@
 //! Robots of a fleet, as rules use them.
 
+use std::collections::BTreeSet;
 use std::ops::Deref;
 use std::rc::Rc;
 
@@ -11,6 +12,9 @@ use crate::grid::Block;
 use crate::messages::ROBOT_LIST;
 use crate::robot::{Robot, RobotProperties};
 use crate::world::World;
+
+/// Nodes that are named, at most.
+const MOST_NODES: usize = 8;
 
 /// A robot of the fleet with valid properties.
 pub(super) struct FleetRobot {
@@ -47,13 +51,22 @@ pub(super) fn are_all_known(fleet: &FleetView<'_>) -> bool {
     robots(fleet).len() == fleet.indices::<Robot>().count()
 }
 
-/// The findings, as warnings where other programs may supply what is missing here.
+/// The findings, as warnings where other programs may supply what is missing here. Of a fleet with nodes all programs
+/// are known: none of them does.
 pub(super) fn unless_elsewhere(fleet: &FleetView<'_>, findings: Vec<Finding>) -> Vec<Finding> {
     const HELP: &str = "ignore this if another program at the same broker (`url`) provides what is missing";
-    if findings.is_empty() || !has_broker(fleet) {
+    if findings.is_empty() {
         return findings;
     }
-    findings.into_iter().map(|finding| finding.severity(Severity::Warning).help(HELP)).collect()
+    if has_broker(fleet) {
+        return findings.into_iter().map(|finding| finding.severity(Severity::Warning).help(HELP)).collect();
+    }
+    let nodes: BTreeSet<&str> = fleet.components().iter().map(|component| component.node).collect();
+    let named: Vec<String> = nodes.iter().filter(|node| !node.is_empty()).map(|node| format!("`{node}`")).collect();
+    let (first, more) = named.split_at(named.len().min(MOST_NODES));
+    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+    let text = format!("none of the nodes of this fleet has it: {}{more}", first.join(", "));
+    findings.into_iter().map(|finding| if named.is_empty() { finding } else { finding.help(text.clone()) }).collect()
 }
 
 /// Facts about all robots, computed once.

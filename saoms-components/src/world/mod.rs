@@ -3,6 +3,7 @@
 
 mod hardware;
 mod luggage;
+mod map_change;
 mod memory;
 mod properties;
 mod referee;

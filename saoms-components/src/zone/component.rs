@@ -6,6 +6,8 @@ use saoms_api::{
 };
 
 use super::asides::Asides;
+use super::asking::Asking;
+use super::beginning::Beginning;
 use super::deadlock::StandingStill;
 use super::ground::Ground;
 use super::ledger::{Heard, Ledger, Member};
@@ -28,12 +30,6 @@ const REPEAT: u64 = 4;
 /// Number of executions after which it confirms what it need not answer otherwise.
 const CONFIRM: u64 = 1;
 
-/// Number of executions without grants after which the zone says for whom it waits.
-const CLOSED: u64 = 20;
-
-/// Number of executions after which a zone that has been closed for longer asks again: each time all robots answer.
-const ASK_AGAIN: u64 = 40;
-
 /// Grants robots the passage through its blocks.
 ///
 /// Robots of its site enter a block only with a grant of the zone in which it lies. A grant is a message that holds
@@ -49,13 +45,13 @@ pub struct Zone {
     hardware: HardwareReference,
     state: Option<State>,
     validator: MessageValidator,
-    /// Components whose robots have said where they are, until the zone grants.
-    heard: BTreeSet<u32>,
-    /// Robots that somebody took off the floor, until the zone grants.
-    gone: BTreeSet<u32>,
+    /// The question to robots where they are, until all have answered.
+    asking: Option<Asking>,
+    /// True if a robot asked the one that was the zone of its blocks before.
+    is_unknown: bool,
     /// When each robot spoke.
     spoke: BTreeMap<u32, Spoken>,
-    /// True if the zone grants: all robots have said where they are.
+    /// True if the zone grants: its record has all that robots may hold.
     open: bool,
     /// Robots that the alerts about deadlocks are about.
     deadlocked: BTreeSet<u32>,
@@ -109,8 +105,8 @@ impl Component for Zone {
             hardware: HardwareReference::default(),
             state: None,
             validator: MessageValidator::default(),
-            heard: BTreeSet::new(),
-            gone: BTreeSet::new(),
+            asking: None,
+            is_unknown: false,
             spoke: BTreeMap::new(),
             open: false,
             deadlocked: BTreeSet::new(),
@@ -163,40 +159,29 @@ impl Zone {
             return Ok(());
         }
         let Some(map) = self.map(context)? else { return Ok(()) };
-        let kept = memory::record(&context.kept()).unwrap_or_else(|failure| {
-            warn!(context, "asks all robots where they are, since its record of grants cannot be read: {failure}");
-            None
-        });
-        let term = context.date().unwrap_or_else(|| context.now().since(saoms_api::Time::START));
+        let (own, others) = records(context);
+        let is_part = |territory: &Territory| (map.width(), map.height()) != (territory.width, territory.height);
+        let has_record = own.is_some() || !others.is_empty() || !context.kept().is_empty();
+        let was_part = own.as_ref().is_some_and(|own| is_part(own.ledger.territory()));
+        let term = context.date().unwrap_or_else(|| context.now().since(Time::START));
         let term = u64::try_from(term.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
         let territory = self.properties.territory(term, &map).map_err(|finding| Failure::from(*finding))?;
-        let ledger = match kept {
-            Some(Record { mut ledger, first_heard }) if is_same(ledger.territory(), &territory) => {
-                // The robots of an earlier program have lost their memory with it: each has to say where it is first.
-                self.open = !context.kept_by_earlier_program();
-                if self.open {
-                    self.spoke.extend(first_heard.into_iter().filter_map(|(robot, first)| {
-                        let incarnation = ledger.member(robot)?.request.incarnation;
-                        Some((robot, Spoken { incarnation, first, last: first }))
-                    }));
-                } else {
-                    ledger.begin_term(territory.term);
-                }
-                ledger
-            }
-            _ => {
-                let earlier: Vec<u64> = context.kept().into_keys().collect();
-                earlier.into_iter().try_for_each(|key| context.keep(key, &[]))?;
-                Ledger::new(territory)
-            }
-        };
+        let Beginning { ledger, spoke, is_complete, is_new } = Beginning::of(territory, own, others, &map);
+        (self.open, self.asking) = (is_complete, is_new.then(Asking::default));
+        if is_complete {
+            let spoken = |(incarnation, first)| Spoken { incarnation, first, last: first };
+            self.spoke.extend(spoke.into_iter().map(|(robot, known)| (robot, spoken(known))));
+        }
+        if is_new && has_record {
+            self.keep_all(&ledger, context)?;
+        }
         context.send(&self.territories, ledger.territory().clone())?;
         if context.is_wired(&self.hardware) {
             // It may have begun after robots went out.
             context.send(&self.removals_asked, Fault::any())?;
         }
         let Territory { corner, width, height, .. } = *ledger.territory();
-        if (map.width(), map.height()) != (width, height) {
+        if is_part(ledger.territory()) || was_part {
             let columns = corner.x..=corner.x.saturating_add_unsigned(width - 1);
             let rows = corner.y..=corner.y.saturating_add_unsigned(height - 1);
             context.set_region(&self.requests, Some(Region::new(columns, rows)))?;
@@ -229,7 +214,7 @@ impl Zone {
         let mut changed = self.hear(state, context);
         changed.extend(self.hear_presence(state, context));
         changed.extend(self.hear_gone(state, context));
-        if !self.is_open(state, context)? {
+        if !self.ask(state, context)? {
             // It begins a new record once all have answered.
             return Ok(());
         }
@@ -267,12 +252,15 @@ impl Zone {
         let mut changed = BTreeSet::new();
         let State { ledger, ground, lost, .. } = state;
         for (header, request) in context.receive(&self.requests).with_headers() {
-            let is_here = request.zone == ledger.territory().zone && request.term == ledger.territory().term;
+            let own = ledger.territory();
+            let is_here = request.zone == own.zone && request.term == own.term;
+            // These blocks were those of another zone, or of this one in an earlier term.
+            self.is_unknown |= own.contains(request.at) && (request.zone != own.zone || request.term < own.term);
             if !is_here || !self.validator.accepts(request, header, Some(ground.map()), context) {
                 continue;
             }
-            if !self.open {
-                self.heard.insert(header.sender);
+            if let Some(asking) = &mut self.asking {
+                asking.note_heard(header.sender);
             }
             if is_newest(&mut self.spoke, request.robot, request.incarnation, header.sent)
                 && !ledger.has_ended(request.robot, request.incarnation)
@@ -306,8 +294,8 @@ impl Zone {
                 continue;
             }
             if presence.clear.contains(&ClearTerm { zone, term }) {
-                if !self.open {
-                    self.heard.insert(header.sender);
+                if let Some(asking) = &mut self.asking {
+                    asking.note_heard(header.sender);
                 }
                 if ledger.hear_clear(presence.robot, presence.incarnation, (presence.block, presence.end)) {
                     changed.insert(presence.robot);
@@ -355,8 +343,8 @@ impl Zone {
             }
             state.ledger.end(fault.robot, spoken.map_or(0, |spoken| spoken.incarnation));
             state.lost.remove(&fault.robot);
-            if !self.open {
-                self.gone.insert(fault.robot);
+            if let Some(asking) = &mut self.asking {
+                asking.note_gone(fault.robot);
             }
             changed.insert(fault.robot);
         }
@@ -368,35 +356,33 @@ impl Zone {
         self.spoke.get(&robot).map_or(Time::START, |spoken| spoken.first)
     }
 
-    /// True if all robots of the fleet have said where they are. Else the zone asks them, and says for whom it waits.
-    fn is_open(&mut self, state: &State, context: &mut Context<'_>) -> Result<bool, Failure> {
-        if self.open {
-            return Ok(true);
-        }
-        let begun = context.publishers(&GRANT_REQUEST).into_iter().filter(|publisher| publisher.has_begun);
-        let is_gone = |number: Option<u32>| number.is_some_and(|robot| self.gone.contains(&robot));
-        let unheard: Vec<KnownPublisher> =
-            begun.filter(|one| !self.heard.contains(&one.sender) && !is_gone(one.number)).collect();
-        if unheard.is_empty() {
-            self.open = true;
-            (self.heard, self.gone) = (BTreeSet::new(), BTreeSet::new());
-            // Also those that it knows no more, since somebody said that they are gone.
-            let kept: Vec<u64> =
-                context.kept().into_keys().filter(|key| !memory::is_current(&state.ledger, *key)).collect();
-            kept.into_iter().try_for_each(|key| context.keep(key, &[]))?;
-            let members = state.ledger.members().keys();
-            let members = members.map(|robot| memory::member(&state.ledger, *robot, self.first_heard(*robot)));
-            for (key, bytes) in std::iter::once(memory::territory(&state.ledger)).chain(members) {
-                context.keep(key, &bytes)?;
+    /// Asks all robots where they are until they have said so, and says for whom it waits. True if it grants.
+    fn ask(&mut self, state: &State, context: &mut Context<'_>) -> Result<bool, Failure> {
+        let is_unknown = std::mem::take(&mut self.is_unknown);
+        let Some(asking) = &mut self.asking else {
+            if is_unknown {
+                context.send(&self.territories, state.ledger.territory().clone())?;
             }
-            context.alert_over("closed", "");
+            return Ok(true);
+        };
+        let unheard = asking.unheard(context);
+        if unheard.is_empty() {
+            self.asking = None;
+            if !std::mem::replace(&mut self.open, true) {
+                self.keep_all(&state.ledger, context)?;
+                context.alert_over("closed", "");
+            }
             return Ok(true);
         }
-        let again = if context.execution() > CLOSED { ASK_AGAIN } else { REPEAT };
-        if context.execution().is_multiple_of(again) {
+        if asking.has_lasted() && !self.open {
+            // Zones that have its blocks after it begin a higher term.
+            let (key, bytes) = memory::territory(&state.ledger, false);
+            context.keep(key, &bytes)?;
+        }
+        if asking.is_due(self.open) || is_unknown && self.open {
             context.send(&self.territories, state.ledger.territory().clone())?;
         }
-        if context.execution() == CLOSED {
+        if asking.has_become_long() && !self.open {
             let (sent, cause) = (context.now(), Cause::default());
             let header = |one: &KnownPublisher| Header { sender: one.sender, sent, cause };
             let names: Vec<&str> = unheard.iter().filter_map(|one| context.sender_name(header(one))).collect();
@@ -410,7 +396,19 @@ impl Zone {
                 ),
             );
         }
-        Ok(false)
+        Ok(self.open)
+    }
+
+    /// Keeps the record, and nothing else: not what it knew of robots of which somebody said that they are gone.
+    fn keep_all(&self, ledger: &Ledger, context: &mut Context<'_>) -> Result<(), Failure> {
+        let kept: Vec<u64> = context.kept().into_keys().filter(|key| !memory::is_current(ledger, *key)).collect();
+        kept.into_iter().try_for_each(|key| context.keep(key, &[]))?;
+        let members = ledger.members().keys();
+        let members = members.map(|robot| memory::member(ledger, *robot, self.first_heard(*robot)));
+        for (key, bytes) in std::iter::once(memory::territory(ledger, self.open)).chain(members) {
+            context.keep(key, &bytes)?;
+        }
+        Ok(())
     }
 
     /// Says which robots stand in each other's way for good, so that a person takes one of them away.
@@ -471,7 +469,22 @@ fn note_lost(lost: &mut BTreeMap<u32, Vec<Block>>, robot: u32, blocks: Option<[B
     }
 }
 
-/// True if two territories have the same blocks.
-fn is_same(one: &Territory, other: &Territory) -> bool {
-    (one.zone, one.corner, one.width, one.height) == (other.zone, other.corner, other.width, other.height)
+/// What the zone kept, and what others did that were zones of its site until this one began. What an earlier program
+/// left lacks what robots did since.
+fn records(context: &mut Context<'_>) -> (Option<Record>, Vec<Record>) {
+    let read = |kept: &BTreeMap<u64, &[u8]>, is_earlier: bool| {
+        let record = memory::record(kept)?;
+        Ok(record.map(|record| Record { is_open: record.is_open && !is_earlier, ..record }))
+    };
+    let own: Result<_, Failure> = read(&context.kept(), context.kept_by_earlier_program());
+    let others = context.kept_by_others();
+    let others = others.iter().map(|other| read(&other.kept, other.by_earlier_program));
+    let others: Vec<Result<_, Failure>> = others.collect();
+    let mut all = std::iter::once(own).chain(others).map(|record| {
+        record.unwrap_or_else(|failure| {
+            warn!(context, "asks all robots where they are, since its record of grants cannot be read: {failure}");
+            None
+        })
+    });
+    (all.next().flatten(), all.flatten().collect())
 }

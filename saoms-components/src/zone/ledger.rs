@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use crate::grid::Block;
-use crate::messages::{Grant, GrantRequest, LAST_NUMBER, Standing, Step, Territory, link};
+use crate::messages::{Grant, GrantRequest, LAST_NUMBER, Standing, Step, Territory, address, link};
 
 /// A zone's record of grants: which robot holds which of its blocks.
 ///
@@ -374,7 +374,7 @@ impl Ledger {
             robot,
             incarnation: request.incarnation,
             heard: request.number,
-            block: request.block,
+            address: address(robot),
             steps: steps.clone(),
             waits_for: in_the_way.map_or(0, |(_, other)| other),
             wanted: in_the_way.map_or(request.end, |(block, _)| block),

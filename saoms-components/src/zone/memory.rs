@@ -11,11 +11,13 @@ use crate::messages::{GrantRequest, Step, Territory};
 /// Where the territory is kept. A robot is kept under its number, which is never 0.
 const TERRITORY: u64 = 0;
 
-/// The territory of a zone that grants, and the form in which robots are kept.
+/// The territory of a zone, and the form in which robots are kept.
 #[derive(Clone, Debug, Message)]
 struct TerritoryMemory {
     territory: Territory,
     form: String,
+    /// True if it grants: the record has all that robots may hold.
+    is_open: bool,
 }
 
 /// What a zone knows of a robot.
@@ -34,12 +36,14 @@ pub(super) struct Record {
     pub(super) ledger: Ledger,
     /// Time of the first request of each robot's newest incarnation.
     pub(super) first_heard: BTreeMap<u32, Time>,
+    /// True if it has all that robots may hold.
+    pub(super) is_open: bool,
 }
 
-/// The bytes of the territory, of a zone that grants.
-pub(super) fn territory(ledger: &Ledger) -> (u64, Vec<u8>) {
+/// The bytes of the territory, of a zone that grants or not.
+pub(super) fn territory(ledger: &Ledger, is_open: bool) -> (u64, Vec<u8>) {
     let (territory, form) = (ledger.territory().clone(), MemberMemory::SCHEMA.to_owned());
-    let memory = TerritoryMemory { territory, form };
+    let memory = TerritoryMemory { territory, form, is_open };
     (TERRITORY, Saved::of(&memory).bytes().to_vec())
 }
 
@@ -59,13 +63,13 @@ pub(super) fn is_current(ledger: &Ledger, key: u64) -> bool {
     key == TERRITORY || u32::try_from(key).is_ok_and(|robot| ledger.member(robot).is_some())
 }
 
-/// The record of a zone that granted, with the time at which each robot began to speak; `None` if there is none.
+/// The record of a zone, with the time at which each robot began to speak; `None` if there is none.
 ///
 /// # Errors
 /// The bytes are no record of this build.
 pub(super) fn record(kept: &BTreeMap<u64, &[u8]>) -> Result<Option<Record>, Failure> {
     let Some(territory) = kept.get(&TERRITORY) else { return Ok(None) };
-    let Some(TerritoryMemory { territory, form }) = Saved::from_bytes(territory.to_vec()).read()? else {
+    let Some(TerritoryMemory { territory, form, is_open }) = Saved::from_bytes(territory.to_vec()).read()? else {
         return Ok(None);
     };
     if form != MemberMemory::SCHEMA {
@@ -81,5 +85,5 @@ pub(super) fn record(kept: &BTreeMap<u64, &[u8]>) -> Result<Option<Record>, Fail
         first_heard.insert(request.robot, first);
         members.insert(request.robot, Member::new(request, steps, granted));
     }
-    Ok(Some(Record { ledger: Ledger::with(territory, members), first_heard }))
+    Ok(Some(Record { ledger: Ledger::with(territory, members), first_heard, is_open }))
 }

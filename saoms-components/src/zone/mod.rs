@@ -4,6 +4,9 @@
 //! both are state machines without clock and chance. `plan` decides which robot is granted which block.
 
 mod asides;
+mod asking;
+mod beginning;
+mod borders;
 mod component;
 mod dead_ends;
 mod deadlock;
@@ -14,6 +17,7 @@ mod memory;
 mod passage;
 mod plan;
 mod properties;
+mod territories;
 
 #[cfg(test)]
 mod explore_tests;
@@ -23,5 +27,6 @@ mod plan_tests;
 pub use component::Zone;
 pub use properties::ZoneProperties;
 
+pub(crate) use borders::staying;
 pub(crate) use passage::{Held, Link, Passage, Wish};
-pub(crate) use plan::MOST_AHEAD;
+pub(crate) use territories::Territories;

@@ -1,3 +1,4 @@
+use super::territories::Territories;
 use crate::grid::Block;
 use crate::messages::{ClearTerm, Grant, GrantRequest, LAST_NUMBER, Standing, Step, Territory, link};
 
@@ -13,15 +14,15 @@ pub(crate) struct Passage {
     held: Vec<Held>,
     /// True if the robot is not on the floor, and waits for the grant of the first block.
     enters: bool,
-    /// The zones that the robot knows, by their numbers.
-    territories: Vec<Territory>,
-    /// The zones to which it has spoken.
+    /// The zones that the robot knows.
+    territories: Territories,
+    /// The zones to which it has spoken, also former ones.
     links: Vec<Link>,
     /// The end of the passage and the charger for which links were made.
     linked: Option<(Block, Block)>,
 }
 
-/// A block that the robot holds, with the zone that granted it.
+/// A block that the robot holds, with its zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Held {
     /// Number of the zone; 0 for a block whose zone is not known yet.
@@ -29,7 +30,7 @@ pub(crate) struct Held {
     pub(crate) step: Step,
 }
 
-/// What the robot and one zone know of each other.
+/// What the robot and one zone know of each other. Numbers grow also where the zone is another one than before.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Link {
     pub(crate) territory: Territory,
@@ -58,6 +59,13 @@ pub(crate) struct Wish {
     pub(crate) aside: Option<(Block, u64)>,
 }
 
+impl Link {
+    /// True if the zone is no former one.
+    fn is_open(&self, territories: &Territories) -> bool {
+        territories.known().contains(&self.territory)
+    }
+}
+
 impl Passage {
     /// The passage of a robot that wants to enter the floor at a block.
     pub(crate) fn entering(robot: u32, incarnation: u64, block: Block) -> Passage {
@@ -75,7 +83,7 @@ impl Passage {
         robot: u32,
         incarnation: u64,
         (held, enters): (Vec<Held>, bool),
-        territories: Vec<Territory>,
+        territories: Territories,
         links: Vec<Link>,
     ) -> Passage {
         Passage { robot, incarnation, held, enters, territories, links, linked: None }
@@ -99,7 +107,7 @@ impl Passage {
         self.enters
     }
 
-    pub(crate) fn territories(&self) -> &[Territory] {
+    pub(crate) fn territories(&self) -> &Territories {
         &self.territories
     }
 
@@ -125,40 +133,32 @@ impl Passage {
 
     /// True if the block is in another zone than this one, and the end of the passage or beside it.
     pub(crate) fn may_ask_for(&self, block: Block, from: u32) -> bool {
-        let there = self.territories.iter().find(|one| one.contains(block));
-        block.distance(self.end()) <= 1 && there.is_some_and(|there| there.zone != from)
+        block.distance(self.end()) <= 1 && self.territories.of(block).is_some_and(|there| there.zone != from)
     }
 
     /// True if the block is in this zone.
     pub(crate) fn is_of(&self, block: Block, zone: u32) -> bool {
-        self.territories.iter().any(|one| one.zone == zone && one.contains(block))
+        self.territories.of(block).is_some_and(|one| one.zone == zone)
     }
 
-    /// Takes in the territory of a zone.
+    /// True if this is the number of a zone, as far as the robot knows.
+    pub(crate) fn knows(&self, zone: u32) -> bool {
+        self.territories.known().iter().any(|known| known.zone == zone)
+    }
+
+    /// Takes in the territory of a zone. Where that has new borders or a new term, grants of those that it replaces
+    /// count no more, and the robot has to say what it holds of its blocks, whichever zone granted them.
     pub(crate) fn hear_territory(&mut self, territory: &Territory) {
-        match self.territories.binary_search_by_key(&territory.zone, |known| known.zone) {
-            Ok(place) if territory.term < self.territories[place].term || *territory == self.territories[place] => {
-                return;
-            }
-            Ok(place) => self.territories[place].clone_from(territory),
-            Err(place) => self.territories.insert(place, territory.clone()),
+        if !self.territories.hear(territory) {
+            return;
         }
         if let Some(link) = self.links.iter_mut().find(|link| link.territory.zone == territory.zone) {
-            if territory.term > link.territory.term {
-                // The zone lost its record: what it granted before and did not arrive yet counts no more.
-                link.heard = 0;
-            }
+            link.heard = 0;
             link.territory.clone_from(territory);
         }
         let Passage { held, territories, .. } = self;
-        for held in held {
-            // A zone that begins anew with other blocks takes some from another one, or leaves them to it.
-            if territory.contains(held.step.block) {
-                held.zone = territory.zone;
-            } else if held.zone == territory.zone {
-                let other = territories.iter().find(|other| other.contains(held.step.block));
-                held.zone = other.map_or(0, |other| other.zone);
-            }
+        for held in held.iter_mut().filter(|held| held.zone != 0 || territory.contains(held.step.block)) {
+            held.zone = territories.of(held.step.block).map_or(0, |zone| zone.zone);
         }
         self.linked = None;
     }
@@ -166,7 +166,7 @@ impl Passage {
     /// The terms in which the robot holds nothing: it ignores grants of earlier ones.
     pub(crate) fn clear(&self) -> Vec<ClearTerm> {
         let holds = |zone: u32| !self.enters && self.held.iter().any(|held| held.zone == zone);
-        let clear = self.territories.iter().filter(|territory| !holds(territory.zone));
+        let clear = self.territories.known().iter().filter(|territory| !holds(territory.zone));
         clear.map(|&Territory { zone, term, .. }| ClearTerm { zone, term }).collect()
     }
 
@@ -179,7 +179,7 @@ impl Passage {
         }
         self.linked = Some((end, charger));
         let Passage { held, territories, links, .. } = self;
-        for territory in territories.iter() {
+        for territory in territories.known() {
             let is_near = || territory.is_near(end);
             let is_held = || held.iter().any(|held| held.zone == territory.zone);
             let is_linked = || links.iter().any(|link| link.territory.zone == territory.zone);
@@ -191,11 +191,12 @@ impl Passage {
     }
 
     /// Takes in a grant. Steps that do not continue the passage are released at once. False if the grant is for an
-    /// earlier incarnation, or of an earlier term.
+    /// earlier incarnation, or of an earlier term or zone.
     pub(crate) fn hear(&mut self, grant: &Grant) -> bool {
         let end = self.end();
         let Some(link) = self.links.iter_mut().find(|link| link.territory.zone == grant.zone) else { return false };
-        if grant.robot != self.robot || grant.incarnation != self.incarnation || grant.term != link.territory.term {
+        let is_mine = grant.robot == self.robot && grant.incarnation == self.incarnation;
+        if !is_mine || grant.term != link.territory.term || !link.is_open(&self.territories) {
             return false;
         }
         link.heard = link.heard.max(grant.heard);
@@ -242,15 +243,17 @@ impl Passage {
     /// The requests that have to be sent now: new ones, and with `again` also those that were not taken in.
     pub(crate) fn requests(&mut self, wish: Wish, again: bool) -> Vec<GrantRequest> {
         self.link(wish.charger);
-        let Passage { robot, incarnation, ref held, enters, ref mut links, .. } = *self;
+        let Passage { robot, incarnation, ref held, enters, ref territories, ref mut links, .. } = *self;
         let (Some(first), Some(last)) = (held.first(), held.last()) else { return Vec::new() };
         let (block, end) = (first.step.block, last.step.block);
         let goal = wish.goal.unwrap_or(end);
         let mut requests = Vec::new();
-        for one in links {
+        for one in links.iter_mut().filter(|link| link.is_open(territories)) {
             let zone = one.territory.zone;
             let of_zone = held.iter().filter(|held| !enters && held.zone == zone);
             let of_zone: Vec<Step> = of_zone.map(|held| held.step).collect();
+            // It has received what other zones granted, too, before this one had these blocks.
+            one.received = of_zone.iter().map(|step| step.number).fold(one.received, u64::max);
             let aside = wish.aside.filter(|(block, _)| one.territory.contains(*block));
             let is_near = |block: Block, end: Block| one.territory.is_near(block) || one.territory.is_near(end);
             let is_concerned = is_near(block, end) || !of_zone.is_empty();

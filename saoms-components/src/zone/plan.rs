@@ -75,7 +75,7 @@ const PATIENCE: u32 = 4;
 const PATIENCE_OVER_EDGE: u32 = 16;
 
 /// Maximum number of blocks that are granted ahead of a robot.
-pub(crate) const MOST_AHEAD: u32 = 16;
+const MOST_AHEAD: u32 = 16;
 
 /// Maximum number of searches for a maneuver in one round.
 const SEARCHES: usize = 2;

@@ -184,6 +184,11 @@ impl AlertList {
         (list.all().cloned().collect(), self.new.subscribe())
     }
 
+    /// All alerts that are kept, oldest first.
+    pub(crate) fn kept(&self) -> Vec<Alert> {
+        self.lock().all().cloned().collect()
+    }
+
     /// Those that are neither over nor acknowledged.
     pub(crate) fn waiting(&self) -> Vec<Alert> {
         self.lock().all().filter(|one| one.waits()).cloned().collect()

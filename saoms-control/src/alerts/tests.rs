@@ -49,7 +49,11 @@ fn listener(token: Option<&str>) -> (TcpListener, AlertTarget) {
 }
 
 fn url(port: u16, token: Option<&str>) -> AlertTarget {
-    let address = HttpAddress::parse(&format!("http://127.0.0.1:{port}/page?key=hidden")).unwrap();
+    let address = HttpAddress::parse(
+        &format!("http://127.0.0.1:{port}/page?key=hidden"),
+        &saoms_lang::model::AddressHelp::ALERTS,
+    )
+    .unwrap();
     AlertTarget::Url { address, token: token.map(|token| Token::of(token).unwrap()) }
 }
 

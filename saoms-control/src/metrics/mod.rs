@@ -117,6 +117,13 @@ pub const METRICS: &[Metric] = metrics! {
         |measured, samples| queues(measured, samples, |queue| queue.waiting);
     "saoms_queue_limit_events" gauge ["component" "topic"] "Events that may wait for the component."
         |measured, samples| queues(measured, samples, |queue| queue.queue);
+    "saoms_network_lost_total" counter ["network"]
+        "Messages that were lost on their way between programs, each counted by the programs at both ends."
+        |measured, samples| {
+            for (url, lost) in &measured.fleet.networks {
+                samples.add(&[("network", url)], *lost as f64);
+            }
+        };
     "saoms_component_value" gauge ["component" "name"] "A number that a component reports in `saoms status`."
         |measured, samples| {
             for one in &measured.fleet.status.components {

@@ -13,7 +13,7 @@ fn lines(metric: &str) -> Vec<String> {
     let mut lateness = Lateness::default();
     [0, 20_000, 2_000_000, 2_000_000, 3_000_000_000].into_iter().for_each(|nanos| lateness.record(nanos));
     let component = ComponentStatus {
-        report: ComponentReport { name: name.to_owned(), executions: 5, ..ComponentReport::default() },
+        report: ComponentReport { name: name.into(), executions: 5, ..ComponentReport::default() },
         emergency_stop: false,
         state: ComponentState::Running,
         period_ms: Some(100.0),
@@ -22,7 +22,8 @@ fn lines(metric: &str) -> Vec<String> {
         values: json!({"level": 86.5, "on": true, "word": "x", "list": [1], "in": {"in": {"er": 1}}, "in.in.er": 2})
             .as_object()
             .unwrap()
-            .clone(),
+            .clone()
+            .into(),
         values_s: None,
     };
     let queue = |waiting| {
@@ -48,6 +49,7 @@ fn lines(metric: &str) -> Vec<String> {
         numbers: vec![("a.b".to_owned(), -2.0), ("c".to_owned(), f64::NAN), ("d".to_owned(), f64::INFINITY)],
         loops: vec![counts(None), counts(Some("L")), counts(Some("L"))],
         queues: vec![queue(1), queue(2)],
+        networks: vec![("relay://localhost:1".to_owned(), 3)],
     };
     let description = FleetDescription {
         name: "fleet".to_owned(),

@@ -24,6 +24,10 @@ pub(super) enum Right {
     Control,
 }
 
+/// The mark of a request that came at the socket of the user.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AtSocket;
+
 impl Right {
     /// The right as a word.
     pub(super) fn name(self) -> &'static str {
@@ -132,6 +136,14 @@ pub(super) async fn guarded(State(access): State<Arc<Access>>, mut request: Requ
     next.run(request).await
 }
 
+/// Lets a request on this machine pass that does not come from a page of another site.
+pub(super) async fn on_machine(State(names): State<HostNames>, request: Request, next: Next) -> Response {
+    match foreign(&names, request.headers(), request.uri()) {
+        Some(refusal) => refusal.into_response(),
+        None => next.run(request).await,
+    }
+}
+
 /// Lets a request at the socket pass, whose clients may do everything: no page of another site, which reaches it where
 /// the user forwards a port to the socket.
 pub(super) async fn at_socket(State(names): State<HostNames>, mut request: Request, next: Next) -> Response {
@@ -141,5 +153,6 @@ pub(super) async fn at_socket(State(names): State<HostNames>, mut request: Reque
         return refusal.into_response();
     }
     request.extensions_mut().insert(Right::Control);
+    request.extensions_mut().insert(AtSocket);
     next.run(request).await
 }

@@ -4,7 +4,7 @@ use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
 /// An error as a client gets it: `{"error": "..."}`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Refusal {
     status: StatusCode,
     message: String,
@@ -46,6 +46,13 @@ impl Refusal {
     }
 }
 
+impl Refusal {
+    /// What is wrong.
+    pub(super) fn message(&self) -> &str {
+        &self.message
+    }
+}
+
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
         let body = json!({"error": self.message}).to_string();
@@ -53,6 +60,8 @@ impl IntoResponse for Refusal {
         if self.status == StatusCode::UNAUTHORIZED {
             response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
         }
+        // Who asked for a service gets it in another form.
+        response.extensions_mut().insert(self);
         response
     }
 }

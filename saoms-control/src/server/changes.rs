@@ -9,6 +9,8 @@ use saoms_core::status::{ComponentStatus, FleetStatus};
 use saoms_lang::schema::Schema;
 use serde_json::{Map, Value, json};
 
+use crate::content::content;
+
 /// The parts of a component's status that are sent as soon as they differ. All others, which count, differ each time:
 /// they are sent now and then.
 const AT_ONCE: &[&str] = &["name", "state", "emergency_stop", "period_ms", "waits_for", "values"];
@@ -88,7 +90,7 @@ fn at_once(one: &ComponentStatus, known: Option<&ComponentStatus>) -> Map<String
         put("waits_for", true, json!(one.waits_for));
     }
     if differs(|a, b| a.values == b.values) {
-        put("values", true, json!(one.values));
+        put("values", true, json!(*one.values));
     }
     fields
 }
@@ -117,32 +119,12 @@ impl RetainedChanges {
     }
 }
 
-/// The greatest number that a browser has exactly.
-const GREATEST: u64 = 1 << 53;
-
 /// A message as clients get it. Its key and numbers that a browser does not have are texts.
 fn message(sent: &SentMessage, schema: &Schema) -> Value {
-    let mut message = schema.decode(sent.message.bytes()).unwrap_or_default();
-    exact(&mut message);
+    let message = content(sent, schema);
     let time = sent.message.header().sent.as_secs_f64();
     let key = sent.message.key().map(|key| key.to_string());
     json!({"time_s": time, "component": &*sent.component, "key": key, "message": message})
-}
-
-/// Makes whole numbers that a browser would round texts.
-fn exact(value: &mut Value) {
-    match value {
-        Value::Array(values) => values.iter_mut().for_each(exact),
-        Value::Object(fields) => fields.values_mut().for_each(exact),
-        Value::Number(number) => {
-            let is_greater = number.as_u64().is_some_and(|one| one > GREATEST)
-                || number.as_i64().is_some_and(|one| one.unsigned_abs() > GREATEST);
-            if is_greater {
-                *value = Value::from(number.to_string());
-            }
-        }
-        Value::Null | Value::Bool(_) | Value::String(_) => {}
-    }
 }
 
 #[cfg(test)]
@@ -168,15 +150,5 @@ mod tests {
         let first = changes.next(&status(), true);
         assert_eq!((first["all"].clone(), first["components"].clone()), (true.into(), json!([])));
         assert_eq!(changes.next(&status(), true)["all"], false);
-    }
-
-    #[test]
-    fn numbers_that_a_browser_would_round_are_texts() {
-        let mut value = json!({"a": [u64::MAX, GREATEST, -1.5], "b": i64::MIN, "c": "18446744073709551615"});
-        exact(&mut value);
-        let expected = json!({
-            "a": ["18446744073709551615", GREATEST, -1.5], "b": "-9223372036854775808", "c": "18446744073709551615",
-        });
-        assert_eq!(value, expected);
     }
 }

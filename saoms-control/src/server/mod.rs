@@ -4,6 +4,7 @@ mod access;
 mod alerts;
 mod answer;
 mod body;
+mod change;
 mod changes;
 mod connections;
 mod fleet;
@@ -11,11 +12,14 @@ mod logs;
 mod orders;
 mod over_network;
 mod page;
+mod problem;
 mod routes;
+mod services;
 mod session;
 mod stream;
 mod time;
 mod topics;
+mod view;
 
 use std::io;
 use std::sync::Arc;
@@ -30,16 +34,18 @@ use tokio::sync::oneshot;
 pub use fleet::{ControlledFleet, SentLine};
 pub use over_network::{NetworkDoor, refuse};
 pub use routes::openapi;
+pub use view::ViewServer;
 
 use access::{Access, at_socket, from_here, guarded};
 use body::{sealed, with_body};
 use connections::serve;
+use problem::as_problems;
 use session::Sessions;
 
 use crate::network::{HostNames, NetworkListener};
 use crate::place::{Listener, OwnFile};
 
-/// Time for clients that follow the log to take its last lines when the server ends.
+/// Time for clients that follow the log to take its last lines when the server ends, and for the answers of calls.
 const FAREWELL: Duration = Duration::from_millis(100);
 
 /// A server that runs on a thread of its own, until it is dropped.
@@ -71,7 +77,7 @@ impl ControlServer {
         let Places { socket, network } = places;
         let (socket, file) = socket.map(|Listener { socket, file }| (socket, file)).unzip();
         let runtime = Builder::new_current_thread().enable_all().thread_name("saoms-control").build()?;
-        let (log, counts) = (Arc::clone(&fleet.log), Arc::clone(&fleet.counts));
+        let (log, counts, calls) = (Arc::clone(&fleet.log), Arc::clone(&fleet.counts), fleet.call_places.clone());
         let router: Router = routes::router(Arc::new(fleet));
         let door = NetworkDoor { router: router.clone(), runtime: runtime.handle().clone() };
         {
@@ -80,7 +86,8 @@ impl ControlServer {
                 socket.set_nonblocking(true)?;
                 let socket = tokio::net::UnixListener::from_std(socket)?;
                 let open = router.clone().merge(page::assets());
-                let open = open.layer(from_fn_with_state(HostNames::of_machine(), at_socket)).layer(from_fn(sealed));
+                let open = open.layer(from_fn_with_state(HostNames::of_machine(), at_socket));
+                let open = open.layer(from_fn(as_problems)).layer(from_fn(sealed));
                 runtime.spawn(serve(socket, open, Arc::clone(&counts)));
             }
             if let Some(NetworkListener { socket, tokens, names, address }) = network {
@@ -90,7 +97,8 @@ impl ControlServer {
                 let access = Arc::new(Access { names, tokens, sessions, counts: Arc::clone(&counts) });
                 let guarded = router.layer(from_fn_with_state(Arc::clone(&access), guarded));
                 let all = guarded.merge(session::router(&access).layer(from_fn(with_body)));
-                let all = all.layer(from_fn_with_state(access, from_here)).layer(from_fn(sealed));
+                let all = all.layer(from_fn_with_state(access, from_here));
+                let all = all.layer(from_fn(as_problems)).layer(from_fn(sealed));
                 runtime.spawn(serve(socket, all, counts));
             }
         }
@@ -99,7 +107,7 @@ impl ControlServer {
             runtime.block_on(async {
                 // Dropping its other end is the order to end.
                 let _ = ended.await;
-                if log.is_followed() {
+                if log.is_followed() || calls.are_waiting() {
                     tokio::time::sleep(FAREWELL).await;
                 }
             });

@@ -18,7 +18,7 @@ type Fleet = State<Arc<ControlledFleet>>;
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Time for which a commit is waited for.
-const COMMIT_PATIENCE: Duration = Duration::from_secs(5);
+pub(super) const COMMIT_PATIENCE: Duration = Duration::from_secs(5);
 
 /// Gives an order, and waits for its answer.
 pub(super) async fn give(fleet: Arc<ControlledFleet>, order: Order) -> Answer {

@@ -8,12 +8,13 @@ use axum::extract::{Extension, Path};
 use axum::response::{Html, IntoResponse, Response};
 use axum::routing::get;
 use saoms_api::extension::DashboardView;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::access::Right;
 use super::answer::{Answer, Refusal, json_text};
 
 const INDEX: &str = include_str!("../../page/index.html");
+const FINISHED: &str = include_str!("../../page/view.html");
 const FORM: &str = include_str!("../../page/login.html");
 /// What the form says after a wrong token; its place in the form.
 const WRONG: &str = "<p class=\"wrong\" role=\"alert\">This is not a token of this fleet.</p>";
@@ -28,6 +29,9 @@ const FILES: &[(&str, &str)] = &[
     ("icon.svg", include_str!("../../page/icon.svg")),
     ("style.css", include_str!("../../page/style.css")),
     ("app.js", include_str!("../../page/app.js")),
+    ("page.js", include_str!("../../page/page.js")),
+    ("player.js", include_str!("../../page/player.js")),
+    ("recorded.js", include_str!("../../page/recorded.js")),
     ("fleet.js", include_str!("../../page/fleet.js")),
     ("orders.js", include_str!("../../page/orders.js")),
     ("dom.js", include_str!("../../page/dom.js")),
@@ -40,6 +44,11 @@ const FILES: &[(&str, &str)] = &[
 /// The page.
 pub(super) async fn index() -> Response {
     html(INDEX)
+}
+
+/// The page of a run that has ended.
+pub(super) async fn finished() -> Response {
+    html(FINISHED)
 }
 
 /// The form for a token.
@@ -81,7 +90,10 @@ fn served(name: &str, text: &'static str) -> Option<Response> {
 
 /// What the page has to know of who looks at it, and of what there is to see.
 pub(super) async fn session(Extension(right): Extension<Right>) -> Answer {
-    let views = DashboardView::linked();
-    let views: Vec<_> = views.iter().map(|view| json!({"name": view.name, "title": view.title})).collect();
-    json_text(json!({"right": right.name(), "views": views}).to_string())
+    json_text(json!({"right": right.name(), "views": views()}).to_string())
+}
+
+/// The names and titles of the views.
+pub(super) fn views() -> Vec<Value> {
+    DashboardView::linked().iter().map(|view| json!({"name": view.name, "title": view.title})).collect()
 }

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::answer::{Answer, Refusal, done, json_text, waiting};
 use super::body::with_body;
 use super::fleet::ControlledFleet;
-use super::{alerts, logs, orders, page, stream, time, topics};
+use super::{alerts, change, logs, orders, page, services, stream, time, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -27,6 +27,9 @@ const LINES: usize = 100;
 
 /// What a picture may load where it is looked at alone: nothing; it brings its style along.
 const PICTURE: &str = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
+
+/// What describes a wanted fleet.
+const CHANGE: &str = "an object in JSON: the `folder` from which paths go, `files`, and where they are needed `set`, `severities`, `plugins`, `allow_outside`, `max_size`, `coloured`, `allow_loss`, `wait_ms` and `by`";
 
 /// Time between the order to end and the end.
 const BEFORE_END: Duration = Duration::from_millis(20);
@@ -106,6 +109,14 @@ const ROUTES: &[Route] = &[
     },
     Route {
         method: "get",
+        path: "/v1/figures",
+        doc: "Figures of the fleet over time, from the start of the run: `plots` are their titles, units and lines, `rows` the times in seconds with the values of all lines.",
+        query: &[("after", "a time of the run in seconds: only the rows after it")],
+        body: None,
+        serve: || get(figures),
+    },
+    Route {
+        method: "get",
         path: "/v1/picture.svg",
         doc: "The picture of the composites, as `saoms graph` draws it.",
         query: &[],
@@ -175,6 +186,22 @@ const ROUTES: &[Route] = &[
         query: &[],
         body: Some("the arguments in JSON, by their names"),
         serve: || post(orders::call),
+    },
+    Route {
+        method: "post",
+        path: "/v1/plan",
+        doc: "Says what would change if the fleet became that of other files, which the program of the fleet reads: `diagnostics` and `text` are what was found in them, `plan` is `null` where they describe no fleet. At the socket of the user alone.",
+        query: &[],
+        body: Some(CHANGE),
+        serve: || post(change::plan),
+    },
+    Route {
+        method: "post",
+        path: "/v1/apply",
+        doc: "The same, and changes the fleet: `applied` says whether, and `failure` has the `error` if not; the fleet is as it was then. At the socket of the user alone.",
+        query: &[],
+        body: Some(CHANGE),
+        serve: || post(change::apply),
     },
     Route {
         method: "get",
@@ -269,7 +296,7 @@ const ROUTES: &[Route] = &[
     Route {
         method: "get",
         path: "/v1/openapi.json",
-        doc: "This document.",
+        doc: "This document, with the services that components offer over the web (`binding.rest`).",
         query: &[],
         body: None,
         serve: || get(document),
@@ -283,7 +310,7 @@ pub(super) fn router(fleet: Arc<ControlledFleet>) -> Router {
         router = router.route(route.path, (route.serve)());
     }
     let router = router.route("/", get(page::index));
-    let router = router.fallback(|| async { Refusal::not_found() });
+    let router = router.fallback(services::serve);
     let router = router.layer(from_fn_with_state(Arc::clone(&fleet), seen_at_once));
     router.layer(from_fn(with_body)).with_state(fleet)
 }
@@ -299,7 +326,7 @@ async fn seen_at_once(State(fleet): Fleet, request: Request, next: Next) -> Resp
     response
 }
 
-/// The OpenAPI document of the server.
+/// The OpenAPI document of the server, without the services that a fleet offers over the web.
 pub fn openapi() -> Value {
     let mut paths = serde_json::Map::new();
     for route in ROUTES {
@@ -329,7 +356,7 @@ pub fn openapi() -> Value {
 }
 
 async fn describe(State(fleet): Fleet) -> Answer {
-    json_text(json!(fleet.description).to_string())
+    json_text(json!(fleet.description()).to_string())
 }
 
 async fn status(State(fleet): Fleet) -> Answer {
@@ -387,6 +414,15 @@ async fn journal(State(fleet): Fleet, Query(query): Query<JournalQuery>) -> Answ
     json_text(json!(records.map_err(Refusal::unprocessable)?).to_string())
 }
 
+#[derive(Deserialize)]
+struct FiguresQuery {
+    after: Option<f64>,
+}
+
+async fn figures(State(fleet): Fleet, Query(query): Query<FiguresQuery>) -> Answer {
+    json_text(fleet.figures.json(query.after).to_string())
+}
+
 async fn picture(State(fleet): Fleet) -> Answer {
     let svg = waiting(move || (fleet.picture)()).await?.map_err(Refusal::unprocessable)?;
     Ok(([("content-type", "image/svg+xml"), ("content-security-policy", PICTURE)], svg).into_response())
@@ -407,6 +443,26 @@ async fn down(State(fleet): Fleet) -> Answer {
     done()
 }
 
-async fn document() -> Answer {
-    json_text(openapi().to_string())
+async fn document(State(fleet): Fleet) -> Answer {
+    let mut document = openapi();
+    services::describe(&mut document, &services::offered(&fleet).await?);
+    json_text(document.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use saoms_lang::model::RESERVED;
+
+    use super::ROUTES;
+
+    #[test]
+    fn no_service_can_have_a_path_of_the_server() {
+        for route in ROUTES {
+            let first = route.path.trim_start_matches('/').split('/').next().unwrap_or_default();
+            assert!(RESERVED.contains(&first), "{} is not among the reserved paths", route.path);
+        }
+        for path in [super::super::session::LOGIN, "/logout", "/assets/app.js"] {
+            assert!(RESERVED.iter().any(|first| path[1..].starts_with(first)), "{path}");
+        }
+    }
 }

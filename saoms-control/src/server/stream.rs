@@ -192,7 +192,7 @@ impl Streamed {
             if let Some(status) = status {
                 let mut changes = looking.status.next(&status, looks.is_multiple_of(COUNTS));
                 if changes["all"] == true {
-                    changes["fleet"] = json!(fleet.description);
+                    changes["fleet"] = json!(fleet.description());
                 }
                 found.push_back(event("status", &changes));
                 found.extend(looking.records(&fleet));

@@ -6,6 +6,7 @@ mod hostile;
 mod network;
 mod pages;
 mod places;
+mod view;
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -30,6 +30,7 @@ pub(crate) fn component(
         library: None,
         references: Vec::new(),
         loops: Default::default(),
+        web: Box::default(),
     })
 }
 

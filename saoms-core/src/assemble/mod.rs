@@ -1,8 +1,9 @@
 //! The difference between the fleet that runs and the fleet that is wanted.
 //!
-//! A [`ChangePlan`] names the components that end, that start, that are replaced and that stay. A run starts with the
-//! plan from nothing to its assembly and ends with the plan back to nothing, so that changing a fleet and starting it
-//! are one thing. A plan is data: making it touches nothing, and needs neither a clock nor a running fleet.
+//! A [`ChangePlan`] names the components that end, that start, that are replaced, that take new values and that stay. A
+//! run starts with the plan from nothing to its assembly and ends with the plan back to nothing, so that changing a
+//! fleet and starting it are one thing. A plan is data: making it touches nothing, and needs neither a clock nor a
+//! running fleet.
 
 mod order;
 mod plan;
@@ -10,7 +11,8 @@ mod plan;
 mod tests;
 
 pub(crate) use order::providers_first;
-pub use plan::{ChangePlan, Difference, Replacement};
+pub(crate) use plan::value;
+pub use plan::{ChangePlan, Difference, LiveUpdate, Replacement};
 
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 

@@ -60,6 +60,7 @@ fn assembly(text: &str) -> Assembly {
             written: Default::default(),
             references: Vec::new(),
             loops: std::sync::Arc::default(),
+            web: Box::default(),
         };
         for word in &words[2..] {
             match word.strip_prefix('>') {
@@ -72,6 +73,7 @@ fn assembly(text: &str) -> Assembly {
                         .into_iter()
                         .collect(),
                     elsewhere: Box::default(),
+                    web: Box::default(),
                     deadline: None,
                 }),
             }
@@ -155,6 +157,7 @@ fn assembly_of_chain(text: &str) -> Assembly {
             interface: "i".to_owned(),
             targets,
             elsewhere: Box::default(),
+            web: Box::default(),
             deadline: None,
         };
         let path = line.split(' ').next().unwrap().to_owned();

@@ -37,6 +37,10 @@ impl Readers {
         self.all.iter().map(|(number, (component, position))| (*number, *component, *position))
     }
 
+    pub(super) fn position(&self, number: u32) -> Option<ReadPosition> {
+        self.all.get(&number).map(|(_, position)| *position)
+    }
+
     pub(super) fn link(&self, number: u32) -> Option<TopicId> {
         let place = self.links.binary_search_by_key(&number, |link| link.number).ok()?;
         Some(self.links[place].topic)

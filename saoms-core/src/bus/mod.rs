@@ -14,6 +14,7 @@ mod events;
 mod hash;
 mod interest;
 mod links;
+mod marks;
 mod regions;
 #[cfg(test)]
 mod regions_tests;
@@ -32,6 +33,7 @@ use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 use saoms_api::{Departed, Region};
 
 pub use links::Link;
+pub use marks::ReaderMark;
 pub use regions::{Cell, cell_of};
 pub(crate) use state::MOST_KEYS;
 use topic::{BusTopic, ReadPosition};
@@ -49,6 +51,8 @@ pub struct Bus {
     names: HashMap<Arc<str>, TopicId>,
     /// Number of readers so far.
     readers: u32,
+    /// Number of times that a topic came into use, or is used by nobody any more.
+    changes: u64,
 }
 
 /// A topic of a [`Bus`].
@@ -134,6 +138,11 @@ impl Bus {
         all.map(|(place, _)| TopicId(place as u32))
     }
 
+    /// Number of changes of the [topics](Bus::topics) in use so far.
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
     /// Whether a topic is one of events or of states.
     pub fn kind(&self, topic: TopicId) -> TopicKind {
         self.topics[topic.0 as usize].kind()
@@ -168,7 +177,9 @@ impl Bus {
 
     /// Takes a publisher off the topic. Retained messages stay.
     pub fn unpublish(&mut self, topic: TopicId) {
-        self.topics[topic.0 as usize].lose_user();
+        let topic = &mut self.topics[topic.0 as usize];
+        topic.lose_user();
+        self.changes += u64::from(topic.users == 0);
     }
 
     /// Registers a reader. It gets what a state topic retains, and the messages of an event topic from now on; of the
@@ -196,6 +207,7 @@ impl Bus {
         let topic = &mut self.topics[subscription.topic.0 as usize];
         topic.lose_user();
         topic.reading -= 1;
+        self.changes += u64::from(topic.users == 0);
         if let Some(interest) = &mut topic.interest {
             interest.remove(subscription.number);
         }
@@ -321,6 +333,11 @@ impl Bus {
         matches!(subscription.reader, ReadPosition::Region(_))
     }
 
+    /// The region of which a reader gets the messages alone.
+    pub fn region(&self, subscription: &TopicReader) -> Option<Region> {
+        self.topics[self.read_by(subscription)].region(&subscription.reader)
+    }
+
     /// Lets a reader get the messages of a region alone, of which at most `queue` events wait, or all again.
     pub fn set_region(
         &mut self,
@@ -412,12 +429,14 @@ impl Bus {
         if let Some(&id) = self.names.get(name) {
             let topic = &mut self.topics[id.0 as usize];
             topic.join(declared, by)?;
+            self.changes += u64::from(topic.users == 1);
             return Ok(id);
         }
         let id = TopicId(u32::try_from(self.topics.len()).unwrap_or(u32::MAX));
         let name: Arc<str> = Arc::from(name);
         self.add(BusTopic::new(Arc::clone(&name), declared, by), 0);
         self.names.insert(name, id);
+        self.changes += 1;
         Ok(id)
     }
 }

@@ -142,6 +142,11 @@ impl RegionReaders {
         }
     }
 
+    /// The region of a reader.
+    pub(super) fn region(&self, place: u32) -> Region {
+        self.readers[place as usize].region
+    }
+
     /// Gives a reader another region.
     pub(super) fn move_to(&mut self, place: u32, region: Region, table: Option<&StateTable>) {
         if self.readers[place as usize].region == region {

@@ -291,6 +291,14 @@ impl BusTopic {
         true
     }
 
+    /// The region of a reader.
+    pub(super) fn region(&self, reader: &ReadPosition) -> Option<Region> {
+        match (reader, &self.regions) {
+            (ReadPosition::Region(place), Some(regions)) => Some(regions.region(*place)),
+            _ => None,
+        }
+    }
+
     /// Lets a reader get the messages of a region alone, or all again.
     pub(super) fn set_region(&mut self, reader: &mut ReadPosition, region: Option<Region>, queue: Option<usize>) {
         let table = self.store.table();

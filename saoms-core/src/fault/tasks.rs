@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::Cause;
+use saoms_api::{Cause, Failure};
 
 /// A fault of one execution of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +14,21 @@ pub(crate) enum TaskFault {
     Fail,
     /// The component ends instead, and starts again after this time, or never.
     Crash { restart: Option<Duration> },
+}
+
+impl TaskFault {
+    /// Lets it happen to the execution that begins.
+    #[cold]
+    pub(crate) fn happen(self) -> Result<(), Failure> {
+        match self {
+            TaskFault::Fail => Err(Failure::new("this execution fails by fault injection")),
+            TaskFault::Crash { .. } => Err(Failure::new("it crashes by fault injection")),
+            TaskFault::Stall(time) => {
+                std::thread::sleep(time);
+                Ok(())
+            }
+        }
+    }
 }
 
 /// A clock that goes wrong.

@@ -27,13 +27,15 @@ pub(super) enum Content {
     /// As read from a file.
     Read { id: String, text: String, values: Map<String, Value> },
     /// A message from outside, or a notice of the engine.
-    Outside { id: &'static str, text: String },
+    Outside { id: &'static str, text: String, values: Map<String, Value> },
 }
 
 /// The id of all records of messages from outside.
 pub(crate) const FROM_OUTSIDE: &str = "message_from_outside";
 /// The id of all records of components that failed and lost what they knew.
 pub(crate) const COMPONENT_FAILED: &str = "component_failed";
+/// The id of all records of changes of the fleet.
+pub(crate) const FLEET_CHANGED: &str = "fleet_changed";
 
 /// A change of what a component knows.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +54,7 @@ impl JournalEntry {
         id: Cause,
         time: Time,
         source: &str,
-        (record, text): (&'static str, String),
+        (record, text, values): (&'static str, String, Map<String, Value>),
         cause: Cause,
     ) -> JournalEntry {
         JournalEntry {
@@ -63,7 +65,7 @@ impl JournalEntry {
             phase: Phase::Symptom,
             cause,
             change: false,
-            what: Content::Outside { id: record, text },
+            what: Content::Outside { id: record, text, values },
         }
     }
 
@@ -120,8 +122,7 @@ impl JournalEntry {
     pub fn value(&self, name: &str) -> Option<Value> {
         match &self.what {
             Content::Noted(record) => record.values().find(|(known, _)| *known == name).map(|(_, value)| json(value)),
-            Content::Read { values, .. } => values.get(name).cloned(),
-            Content::Outside { .. } => None,
+            Content::Read { values, .. } | Content::Outside { values, .. } => values.get(name).cloned(),
         }
     }
 
@@ -146,8 +147,7 @@ impl JournalEntry {
     pub fn values(&self) -> Map<String, Value> {
         match &self.what {
             Content::Noted(record) => record.values().map(|(name, value)| (name.to_owned(), json(value))).collect(),
-            Content::Read { values, .. } => values.clone(),
-            Content::Outside { .. } => Map::new(),
+            Content::Read { values, .. } | Content::Outside { values, .. } => values.clone(),
         }
     }
 

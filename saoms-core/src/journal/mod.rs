@@ -23,7 +23,7 @@ mod tests;
 mod why;
 
 pub(crate) use batch::Head;
-pub(crate) use entry::{COMPONENT_FAILED, FROM_OUTSIDE};
+pub(crate) use entry::{COMPONENT_FAILED, FLEET_CHANGED, FROM_OUTSIDE};
 pub use entry::{Change, JournalEntry};
 pub use excerpt::LiveJournal;
 pub(crate) use excerpt::Pieces;

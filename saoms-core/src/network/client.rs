@@ -1,5 +1,6 @@
 //! The thread of a program's part of a network.
 
+mod enter;
 mod link;
 mod member;
 #[cfg(test)]
@@ -8,14 +9,16 @@ mod unsent;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+
+use saoms_api::host::contain::contained;
 
 use super::exchange::Settings;
 use super::fleet::{Fleet, Membership};
 use super::key;
 use super::port::{AtOnce, Port};
 use super::transport::{Delivered, TransportSession};
-use member::Member;
+pub use enter::{Entry, enter};
+use member::{Linger, Member};
 
 /// Tokens of subscriptions.
 const ALIVE: u64 = 1;
@@ -26,14 +29,14 @@ const CALL: u64 = 5;
 const REPLY: u64 = 6;
 const CONTROL: u64 = 7;
 const LOOK: u64 = 8;
+const BEGINS: u64 = 9;
+const RUNS: u64 = 10;
 /// From here on those of topics.
 const FIRST_OF_TOPICS: u64 = 16;
 
 /// Time between two looks at what others say, in nanoseconds, after which the thread was held up, as by SIGSTOP: what
 /// they said meanwhile has not arrived yet.
 const HELD_UP: u64 = 500_000_000;
-/// Time for which a program that ends waits until others have received its events.
-const LINGER: Duration = Duration::from_secs(15);
 
 /// A program's part of a network. Dropping it leaves the network.
 #[derive(Debug)]
@@ -90,7 +93,7 @@ impl Drop for Client {
 
 /// What the thread of a network does.
 fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
-    let mut ending: Option<Instant> = None;
+    let mut ending: Option<Linger> = None;
     let mut member = lock(shared);
     let mut looked = member.now();
     loop {
@@ -114,8 +117,8 @@ fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
             member.attend();
         }
         if is_closed {
-            let since = *ending.get_or_insert_with(Instant::now);
-            if member.has_sent_all() || since.elapsed() > LINGER {
+            let ending = ending.get_or_insert_with(|| Linger::begin(&member));
+            if !member.lingers(ending) {
                 break;
             }
         }
@@ -139,5 +142,11 @@ impl<F: Fleet> AtOnce for Mutex<Member<F>> {
         let Ok(mut member) = self.try_lock() else { return false };
         member.take_at_once(delivered);
         true
+    }
+
+    fn send(&self) -> bool {
+        let Ok(mut member) = self.try_lock() else { return false };
+        // A fault of the exchange ends no component that sends.
+        contained(|| member.send_at_once()).unwrap_or(false)
     }
 }

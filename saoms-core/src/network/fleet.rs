@@ -36,6 +36,12 @@ pub trait Fleet: Send + 'static {
     /// Tells something about the network.
     fn tell(&self, level: Level, text: String);
 
+    /// Counts messages that are lost for good, and remembers what was told of the first: the run fails.
+    fn count_lost(&self, count: u64, text: &str);
+
+    /// True if a signal has come that ends the run: nobody waits any longer than necessary.
+    fn is_interrupted(&self) -> bool;
+
     /// Tells a person that the link to the network is lost, or that a program gives no sign of life; without a text,
     /// that it is over.
     fn alert(&self, kind: &str, subject: &str, text: Option<String>);

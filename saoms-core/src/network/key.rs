@@ -5,6 +5,8 @@
 //! | `saoms/1/topic/TOPIC/COMPONENT` | messages of components: CDR, with an [`Envelope`](super::exchange::wire::Envelope) beside it |
 //! | `saoms/1/topic/TOPIC/COMPONENT/X/Y` | the same of a state topic with places, that concern this cell of 16 by 16 blocks |
 //! | `saoms/1/alive/PROGRAM` | signs of life |
+//! | `saoms/1/begins/PROGRAM` | what this program says before its components begin |
+//! | `saoms/1/runs/PROGRAM` | answers to it: which of these run elsewhere |
 //! | `saoms/1/ask/PROGRAM` | requests to this program to send messages again |
 //! | `saoms/1/again/PROGRAM/TOPIC` | messages that this program asked for |
 //! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
@@ -116,6 +118,21 @@ pub fn alive(program: u64) -> String {
     format!("{PREFIX}/alive/{program:x}")
 }
 
+/// The key of what a program says before its components begin.
+pub fn begins(program: u64) -> String {
+    format!("{PREFIX}/begins/{program:x}")
+}
+
+/// The keys of what all programs say then.
+pub fn begins_of_all() -> String {
+    format!("{PREFIX}/begins/*")
+}
+
+/// The key of answers to it.
+pub fn runs(program: u64) -> String {
+    format!("{PREFIX}/runs/{program:x}")
+}
+
 /// The key of requests to a program.
 pub fn ask(program: u64) -> String {
     format!("{PREFIX}/ask/{program:x}")
@@ -154,7 +171,7 @@ pub fn of_user(Grant { access, calls: may_call }: &Grant) -> UserKeys {
     };
     // Everybody is there, asks and answers.
     let common = || {
-        let asked = ["ask", "covered", "look"].map(|what| format!("{PREFIX}/{what}/*"));
+        let asked = ["begins", "runs", "ask", "covered", "look"].map(|what| format!("{PREFIX}/{what}/*"));
         [alive_of_all()].into_iter().chain(asked)
     };
     let of = |topics: &Topics| {

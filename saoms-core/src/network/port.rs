@@ -16,6 +16,10 @@ use crate::bus::Cell;
 
 /// Messages of components that wait for the thread of the network, at most.
 const MOST_MESSAGES: usize = 262_144;
+/// Messages that the thread which leaves them sends itself, at most: more take longer than to wake another thread.
+pub(super) const MOST_AT_ONCE: usize = 16;
+/// Bytes of these, at most: so many fit into one packet of a transport, for which it need not wait for room.
+pub(super) const MOST_BYTES_AT_ONCE: usize = 32 << 10;
 /// Bytes that wait for it from the transport, at most.
 const MOST_BYTES: usize = 64 << 20;
 
@@ -68,16 +72,20 @@ pub(super) struct LinkChange {
     pub(super) reason: String,
 }
 
-/// Who takes a frame at once, on the thread of the transport that brings it.
+/// Who does the work of the thread of the network at once, on the thread that brings it: to wake another thread takes
+/// longer than the work. It waits neither for that thread nor for the transport.
 pub(super) trait AtOnce: Send + Sync {
-    /// Takes a frame; false if the thread of the network has to. It waits neither for that nor for the transport.
+    /// Takes a frame; false if the thread of the network has to.
     fn take(&self, delivered: &Delivered<'_>) -> bool;
+
+    /// Sends the messages of components that wait; false if the thread of the network has to.
+    fn send(&self) -> bool;
 }
 
 /// What waits for the thread of the network.
 #[derive(Default)]
-pub(super) struct Waiting {
-    pub(super) from_run: Vec<FromRun>,
+pub(crate) struct Waiting {
+    pub(crate) from_run: Vec<FromRun>,
     /// Messages that found no room.
     pub(super) lost: u64,
     pub(super) frames: VecDeque<Frame>,
@@ -89,7 +97,6 @@ pub(super) struct Waiting {
     /// True if the thread is to look at its times again.
     is_nudged: bool,
     sleeps: bool,
-    /// Who takes frames at once.
     at_once: Option<Weak<dyn AtOnce>>,
 }
 
@@ -102,6 +109,25 @@ impl Waiting {
     pub(super) fn has_no_more_than_messages(&self) -> bool {
         let are_messages = self.from_run.iter().all(|from_run| matches!(from_run, FromRun::Message { .. }));
         are_messages && self.frames.is_empty() && self.links.is_empty() && !self.is_nudged
+    }
+
+    /// Takes all of it. What is known of the thread of the network stays: another one may take it while that one
+    /// sleeps.
+    fn take(&mut self) -> Waiting {
+        let Waiting { is_closed, has_ended, sleeps, ref at_once, .. } = *self;
+        let rest = Waiting { is_closed, has_ended, sleeps, at_once: at_once.clone(), ..Waiting::default() };
+        std::mem::replace(self, rest)
+    }
+
+    /// True if there are a few short messages of components alone.
+    fn is_short(&self) -> bool {
+        let size = |from_run: &FromRun| match from_run {
+            FromRun::Message { message, .. } => message.bytes().len(),
+            _ => 0,
+        };
+        self.from_run.len() <= MOST_AT_ONCE
+            && self.has_no_more_than_messages()
+            && self.from_run.iter().map(size).sum::<usize>() <= MOST_BYTES_AT_ONCE
     }
 }
 
@@ -131,8 +157,14 @@ impl Port {
         }
     }
 
-    /// Leaves what the run has.
+    /// Leaves what the run has, and has it sent.
     pub(crate) fn put(&self, all: impl Iterator<Item = FromRun>) {
+        self.leave(all);
+        self.send(true);
+    }
+
+    /// Leaves what the run has, in order with what others leave. [`Port::send`] has to follow.
+    pub(crate) fn leave(&self, all: impl Iterator<Item = FromRun>) {
         let mut waiting = self.lock();
         for from_run in all {
             match from_run {
@@ -150,6 +182,23 @@ impl Port {
                 // Who asks gives up, and can ask again.
                 FromRun::Answer { .. } => {}
             }
+        }
+    }
+
+    /// Has sent what the run has left: a few messages by the caller itself if it may and the thread of the network
+    /// sleeps. The caller holds no lock of the run.
+    pub(crate) fn send(&self, may_send: bool) {
+        let mut waiting = self.lock();
+        if may_send
+            && waiting.sleeps
+            && waiting.is_short()
+            && let Some(at_once) = waiting.at_once.as_ref().and_then(Weak::upgrade)
+        {
+            drop(waiting);
+            if at_once.send() {
+                return;
+            }
+            waiting = self.lock();
         }
         self.wake(waiting);
     }
@@ -184,13 +233,24 @@ impl Port {
     }
 
     /// Takes what waits.
-    pub(super) fn take(&self) -> Waiting {
-        let mut waiting = self.lock();
-        let rest = Waiting { is_closed: waiting.is_closed, at_once: waiting.at_once.clone(), ..Waiting::default() };
-        std::mem::replace(&mut *waiting, rest)
+    pub(crate) fn take(&self) -> Waiting {
+        self.lock().take()
     }
 
-    /// Lets this one take frames at once, while none waits.
+    /// Takes the frames that wait, and leaves all else.
+    pub(super) fn take_frames(&self) -> VecDeque<Frame> {
+        let mut waiting = self.lock();
+        waiting.bytes = 0;
+        std::mem::take(&mut waiting.frames)
+    }
+
+    /// Takes what waits if it is a few short messages of components alone, and the thread of the network has not ended.
+    pub(super) fn take_short(&self) -> Option<Waiting> {
+        let mut waiting = self.lock();
+        (waiting.is_short() && !waiting.has_ended).then(|| waiting.take())
+    }
+
+    /// Lets this one do at once what it can, while nothing waits that comes before it.
     pub(super) fn let_take(&self, at_once: Weak<dyn AtOnce>) {
         self.lock().at_once = Some(at_once);
     }
@@ -239,7 +299,13 @@ impl Receiver for Port {
 
 #[cfg(test)]
 mod tests {
+    use std::thread;
+    use std::time::Instant;
+
     use super::*;
+
+    /// Longest time for something that has to happen at once.
+    const LONGEST: Duration = Duration::from_secs(60);
 
     #[test]
     fn what_components_read_is_never_lost() {
@@ -250,5 +316,20 @@ mod tests {
         let waiting = port.take();
         assert_eq!((waiting.from_run.len(), waiting.lost), (MOST_MESSAGES + 1, 0));
         assert!(matches!(waiting.from_run.last(), Some(FromRun::Reads { .. })));
+    }
+
+    #[test]
+    fn who_sleeps_is_woken_after_another_thread_has_taken_what_waited() {
+        let port = Port::default();
+        let begin = Instant::now();
+        thread::scope(|scope| {
+            scope.spawn(|| port.wait(LONGEST, false));
+            while !port.lock().sleeps && begin.elapsed() < LONGEST {
+                thread::yield_now();
+            }
+            port.take();
+            port.nudge();
+        });
+        assert!(begin.elapsed() < LONGEST / 2);
     }
 }

@@ -37,11 +37,19 @@ pub(super) fn told(news: &News) -> (Level, String) {
         News::Left { name, .. } => (Level::Info, format!("program `{name}` has left the network")),
         News::Unreachable { name, components, .. } => (Level::Error, unheard(name, components)),
         News::Back { name, .. } => (Level::Info, format!("program `{name}` gives signs of life again")),
-        News::GivenUp { name, .. } => (
-            Level::Warning,
+        News::GivenUp { name, count: 0, .. } => {
+            (Level::Warning, format!("program `{name}` was away for so long that no more events are kept for it"))
+        }
+        News::GivenUp { name, count, .. } => (
+            Level::Error,
             format!(
-                "program `{name}` was away for so long that no more events are kept for it: it will have lost some"
+                "program `{name}` was away for so long that no more events are kept for it: {count} messages are lost for it, \
+                 and those that follow until it is there again"
             ),
+        ),
+        News::Replaced { name } => (
+            Level::Info,
+            format!("components of program `{name}` have begun in another program: nothing is kept for that one"),
         ),
         News::Unreceived { name, topic, count } => (
             Level::Error,

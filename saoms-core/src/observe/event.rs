@@ -63,7 +63,7 @@ pub enum Occurrence {
         /// True if it goes on from what the failed one had saved.
         continued: bool,
     },
-    /// An instance of a new build of its class has replaced the component.
+    /// A new instance has replaced the component, in a change of the fleet.
     Replaced {
         /// True if it restored the state of the earlier one.
         continued: bool,
@@ -181,10 +181,10 @@ impl fmt::Display for Occurrence {
                 write!(formatter, "restarted ({number}), and continues")
             }
             Occurrence::Replaced { continued: true } => {
-                formatter.write_str("is replaced by its new build, and continues with the earlier state")
+                formatter.write_str("is replaced, and continues with the earlier state")
             }
             Occurrence::Replaced { continued: false } => {
-                formatter.write_str("is replaced by its new build, and starts without the earlier state")
+                formatter.write_str("is replaced, and starts without the earlier state")
             }
             Occurrence::Slow { what, budget } => write!(
                 formatter,
@@ -197,6 +197,9 @@ impl fmt::Display for Occurrence {
                     Some(sender) => write!(formatter, ": most were sent by `{sender}`"),
                     None => Ok(()),
                 }
+            }
+            Occurrence::Busy { provider } if provider.contains("://") => {
+                write!(formatter, "the server at `{provider}`, which it calls, is busy: tries again in each period")
             }
             Occurrence::Busy { provider } => {
                 write!(formatter, "component `{provider}`, which it calls, is busy: tries again in each period")

@@ -13,6 +13,7 @@ mod observer;
 mod queue;
 mod records;
 mod rotation;
+mod sample;
 #[cfg(test)]
 mod tests;
 
@@ -25,3 +26,4 @@ pub use observer::{Beginning, Interest, Observer, Records};
 pub(crate) use queue::{EventQueue, Notification};
 pub(crate) use records::{RecordDelivery, deliver_records};
 pub use rotation::{RotatingFile, Rotation, earlier_file};
+pub use sample::{FleetSample, SampleRate, StateOfTopic};

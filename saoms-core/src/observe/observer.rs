@@ -5,15 +5,17 @@ use std::time::Duration;
 use saoms_api::host::TopicDeclaration;
 use saoms_api::{Failure, Level, Time};
 
-use super::{Occurrence, RunEvent, RunProgress, SentMessage};
+use super::{FleetSample, Occurrence, RunEvent, RunProgress, SampleRate, SentMessage};
 use crate::journal::{ComponentName, JournalEntry};
 use crate::report::RunReport;
+use crate::status::ComponentStatus;
 
 /// A program that sees what happens in a fleet.
 ///
 /// Events, messages and progress come from one thread of their own, in the order in which they happened, so that an
 /// observer may take its time; but observers wait for each other. In real time, events that pile up beyond a bound are
-/// counted and lost; in virtual time the run waits. An observer that panics in a call loses that call only.
+/// counted and lost, and so are samples beyond two; in virtual time the run waits. An observer that panics in a call
+/// loses that call only.
 pub trait Observer: Send + Sync + 'static {
     /// Optional events that the observer wants. Called once, before the start.
     fn interest(&self) -> Interest {
@@ -51,6 +53,26 @@ pub trait Observer: Send + Sync + 'static {
         let _ = sent;
     }
 
+    /// True if samples should have what state topics retain whose messages have this name. Called when a sample is
+    /// taken, on a thread of the run, so it has to be fast.
+    fn wants_state(&self, message: &str) -> bool {
+        let _ = message;
+        false
+    }
+
+    /// True if samples should have what a component says of itself, which has said this for the first time. One that
+    /// no observer of samples wants is not asked for them any more, until it starts again, has other values, or says
+    /// something else to whoever asks. Called when a sample is taken, on a thread of the run, so it has to be fast.
+    fn wants_status(&self, component: &ComponentStatus) -> bool {
+        let _ = component;
+        true
+    }
+
+    /// The fleet at one moment: as often as an observer [wants](Interest::samples), and at the end of the run.
+    fn sample(&self, sample: &FleetSample) {
+        let _ = sample;
+    }
+
     /// Periodic report of the progress of the run.
     fn progress(&self, progress: &RunProgress) {
         let _ = progress;
@@ -85,13 +107,16 @@ pub struct Interest {
     pub console: bool,
     /// Interval of [`Observer::progress`]; `None` is never.
     pub progress: Option<Duration>,
+    /// How often [`Observer::sample`] is called at least; `None` is never. Components are asked how they are for each
+    /// sample, between executions, if an observer [wants](Observer::wants_status) that.
+    pub samples: Option<SampleRate>,
     /// Records of the journal.
     pub journal: bool,
 }
 
 impl Interest {
     /// No line, no progress, no record.
-    pub const NONE: Interest = Interest { log: None, console: false, progress: None, journal: false };
+    pub const NONE: Interest = Interest { log: None, console: false, progress: None, samples: None, journal: false };
 }
 
 impl Default for Interest {
@@ -154,12 +179,13 @@ impl Observers {
         }
     }
 
-    /// The union of all interests.
+    /// The union of all interests, but for samples.
     pub(crate) fn interest(&self) -> Interest {
         let wider = |one: Interest, other: Interest| Interest {
             log: one.log.max(other.log),
             console: one.console || other.console,
             progress: one.progress.into_iter().chain(other.progress).min(),
+            samples: None,
             journal: one.journal || other.journal,
         };
         self.all.iter().map(|(_, interest)| *interest).fold(Interest::NONE, wider)
@@ -196,6 +222,29 @@ impl Observers {
             if !sent.is_of_other || observer.hears_others() {
                 contained(|| observer.message(sent));
             }
+        }
+    }
+
+    /// How often samples are wanted.
+    pub(crate) fn sample_rates(&self) -> impl Iterator<Item = SampleRate> {
+        self.all.iter().filter_map(|(_, interest)| interest.samples)
+    }
+
+    /// True if an observer of samples wants what topics with such messages retain.
+    pub(crate) fn want_state(&self, message: &str) -> bool {
+        let mut all = self.all.iter().filter(|(_, interest)| interest.samples.is_some());
+        all.any(|(observer, _)| contained(|| observer.wants_state(message)).unwrap_or(false))
+    }
+
+    /// True if an observer of samples wants what a component says of itself.
+    pub(crate) fn want_status(&self, component: &ComponentStatus) -> bool {
+        let mut all = self.all.iter().filter(|(_, interest)| interest.samples.is_some());
+        all.any(|(observer, _)| contained(|| observer.wants_status(component)).unwrap_or(false))
+    }
+
+    pub(crate) fn sample(&self, sample: &FleetSample) {
+        for (observer, _) in self.all.iter().filter(|(_, interest)| interest.samples.is_some()) {
+            contained(|| observer.sample(sample));
         }
     }
 

@@ -4,12 +4,14 @@ use std::time::{Duration, Instant};
 
 use saoms_api::{Level, Time};
 
-use super::{Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
+use super::{FleetSample, Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
 
 /// Maximum number of events that wait for the observers.
 const CAPACITY: usize = 65_536;
 /// Maximum size of the lines among them, in bytes, beside the last one.
 const MOST_BYTES: usize = 64 << 20;
+/// Maximum number of samples that wait beside these: each is as large as the fleet.
+const MOST_SAMPLES: usize = 2;
 
 /// An event or a message on its way to the observers.
 pub(crate) enum Notification {
@@ -17,6 +19,8 @@ pub(crate) enum Notification {
     Event(RunEvent),
     /// A component sent a message on a topic that the observers of these numbers want.
     Sent(SentMessage, Arc<[u32]>),
+    /// The fleet at one moment.
+    Sample(Box<FleetSample>),
 }
 
 impl Notification {
@@ -24,6 +28,7 @@ impl Notification {
         match self {
             Notification::Event(event) => event.time,
             Notification::Sent(sent, _) => sent.message.header().sent,
+            Notification::Sample(sample) => sample.time,
         }
     }
 
@@ -31,6 +36,7 @@ impl Notification {
         match self {
             Notification::Event(event) => observers.event(event),
             Notification::Sent(sent, who) => observers.message(sent, who),
+            Notification::Sample(sample) => observers.sample(sample),
         }
     }
 }
@@ -65,15 +71,54 @@ pub(crate) struct EventQueue {
     interest: Interest,
 }
 
+/// What had no room.
+#[derive(Clone, Copy, Default)]
+struct Lost {
+    events: u64,
+    samples: u64,
+}
+
 #[derive(Default)]
 struct Waiting {
     notifications: VecDeque<Notification>,
     /// Bytes of their lines.
     bytes: usize,
-    lost: u64,
+    /// Number of samples among them.
+    samples: usize,
+    lost: Lost,
     reader_sleeps: bool,
     writers_sleep: bool,
     closed: bool,
+}
+
+impl Waiting {
+    /// True if there is no room for one more. Samples have room of their own, and that of the end has it always.
+    fn is_full_for(&self, notification: &Notification) -> bool {
+        match notification {
+            Notification::Sample(sample) => self.samples >= MOST_SAMPLES && !sample.is_last,
+            _ => self.notifications.len() - self.samples >= CAPACITY || self.bytes >= MOST_BYTES,
+        }
+    }
+}
+
+impl Lost {
+    fn note(&mut self, notification: &Notification) {
+        match notification {
+            Notification::Sample(_) => self.samples += 1,
+            _ => self.events += 1,
+        }
+    }
+
+    /// What is told of it.
+    fn texts(self) -> impl Iterator<Item = String> {
+        let Lost { events, samples } = self;
+        let events =
+            (events > 0).then(|| format!("{events} events came faster than they could be shown, and were lost"));
+        let samples = (samples > 0).then(|| {
+            format!("{samples} samples of the fleet came faster than they could be taken in, and were left out")
+        });
+        events.into_iter().chain(samples)
+    }
 }
 
 impl EventQueue {
@@ -106,15 +151,16 @@ impl EventQueue {
     pub(crate) fn put(&self, notification: impl Into<Notification>) {
         let notification = notification.into();
         let mut waiting = self.lock();
-        while (waiting.notifications.len() >= CAPACITY || waiting.bytes >= MOST_BYTES) && !waiting.closed {
+        while waiting.is_full_for(&notification) && !waiting.closed {
             if !self.blocks_when_full {
-                waiting.lost += 1;
+                waiting.lost.note(&notification);
                 return;
             }
             waiting.writers_sleep = true;
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
         waiting.bytes += notification.size();
+        waiting.samples += usize::from(matches!(notification, Notification::Sample(_)));
         waiting.notifications.push_back(notification);
         if std::mem::take(&mut waiting.reader_sleeps) {
             self.filled.notify_one();
@@ -145,8 +191,7 @@ impl EventQueue {
                 last = notification.time();
                 notification.deliver(observers);
             }
-            if lost > 0 {
-                let text = format!("{lost} events came faster than they could be shown, and were lost");
+            for text in lost.texts() {
                 let what = Occurrence::Note { level: Level::Warning, text };
                 observers.event(&RunEvent { time: last, component: None, what });
             }
@@ -161,7 +206,7 @@ impl EventQueue {
     }
 
     /// Waits for events and takes all of them. The flag is true if the queue is closed.
-    fn next_batch(&self, batch: &mut VecDeque<Notification>, until: Option<Instant>) -> (u64, bool) {
+    fn next_batch(&self, batch: &mut VecDeque<Notification>, until: Option<Instant>) -> (Lost, bool) {
         let mut waiting = self.lock();
         while waiting.notifications.is_empty() && !waiting.closed {
             waiting.reader_sleeps = true;
@@ -177,7 +222,7 @@ impl EventQueue {
             };
         }
         std::mem::swap(batch, &mut waiting.notifications);
-        waiting.bytes = 0;
+        (waiting.bytes, waiting.samples) = (0, 0);
         if std::mem::take(&mut waiting.writers_sleep) {
             self.emptied.notify_all();
         }

@@ -7,10 +7,11 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Failure, Level, Time, record};
 
 use super::{
-    Beginning, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Records, RunEvent, RunProgress,
-    deliver_records,
+    Beginning, EventQueue, FleetSample, Interest, JournalFile, Notification, Observer, Observers, Occurrence, Records,
+    RunEvent, RunProgress, SampleRate, deliver_records,
 };
 use crate::journal::{ComponentName, RecordQueue, Recorder, Stamp};
+use crate::status::{FleetPhase, FleetStatus};
 
 /// A slow observer.
 #[derive(Default)]
@@ -69,6 +70,71 @@ fn long_lines_have_less_room() {
     let told = listener.told.lock().unwrap();
     assert_eq!(told.len(), 64 + 1);
     assert_eq!(told[64], "[0.000 s] 136 events came faster than they could be shown, and were lost");
+}
+
+/// An observer that gets samples beside what it listens to.
+#[derive(Default)]
+struct Looks {
+    listener: Listener,
+    times: Mutex<Vec<u64>>,
+}
+
+impl Observer for Looks {
+    fn interest(&self) -> Interest {
+        let samples = Some(SampleRate { every: Duration::from_secs(1), most: None });
+        Interest { samples, ..Interest::default() }
+    }
+
+    fn event(&self, event: &RunEvent) {
+        self.listener.event(event);
+    }
+
+    fn sample(&self, sample: &FleetSample) {
+        self.times.lock().unwrap().push(sample.time.as_nanos());
+    }
+}
+
+fn sample(nanos: u64, is_last: bool) -> Notification {
+    let (time_s, phase) = (0.0, FleetPhase::Running);
+    let (summaries, components) = (Vec::new(), Vec::new());
+    let status = FleetStatus { time_s, phase, paused: false, speed: None, summaries, components };
+    Notification::Sample(Box::new(FleetSample { time: Time::from_nanos(nanos), status, states: Vec::new(), is_last }))
+}
+
+#[test]
+fn few_samples_wait_and_they_take_no_room_from_events() {
+    let looks = Arc::new(Looks::default());
+    let observers = Observers::new(vec![looks.clone()]);
+    let queue = EventQueue::new(observers.interest(), false);
+    for number in 0..65_536 {
+        queue.put(event(number));
+        if number < 10 {
+            queue.put(sample(number as u64, false));
+        }
+    }
+    queue.put(sample(10, true));
+    queue.close();
+    queue.deliver(&observers, RunProgress::default);
+    let told = looks.listener.told.lock().unwrap();
+    assert_eq!(told.len(), 65_536 + 1);
+    let lost = "[0.000 s] 8 samples of the fleet came faster than they could be taken in, and were left out";
+    assert_eq!(told[65_536], lost);
+    assert_eq!(*looks.times.lock().unwrap(), [0, 1, 10]);
+}
+
+#[test]
+fn samples_wait_for_room_in_virtual_time() {
+    let looks = Arc::new(Looks::default());
+    let observers = Observers::new(vec![looks.clone()]);
+    let queue = Arc::new(EventQueue::new(observers.interest(), true));
+    let deliverer = {
+        let queue = Arc::clone(&queue);
+        thread::spawn(move || queue.deliver(&observers, RunProgress::default))
+    };
+    (0..1000).for_each(|number| queue.put(sample(number, false)));
+    queue.close();
+    deliverer.join().unwrap();
+    assert_eq!(looks.times.lock().unwrap().len(), 1000);
 }
 
 #[test]

@@ -94,7 +94,11 @@ pub fn merge(reports: Vec<RunReport>) -> Result<RunReport, MergeError> {
     let adaptation = has_adaptation.then(|| {
         let mut adaptations = Adaptations::default();
         for component in &components {
-            let name = ComponentName { name: component.name.clone(), id: component.id.clone(), period_us: None };
+            let name = ComponentName {
+                name: component.name.to_string(),
+                id: component.id.as_ref().map(ToString::to_string),
+                period_us: None,
+            };
             adaptations.join(&name);
         }
         journal.entries().iter().for_each(|entry| adaptations.take(entry));
@@ -112,6 +116,7 @@ pub fn merge(reports: Vec<RunReport>) -> Result<RunReport, MergeError> {
         standstill,
         outcome,
         trace_hash: None,
+        recording: None,
         part: parts.into_iter().next().map(|first| PartOfFleet { node: String::new(), began_us: began, ..first }),
         nodes,
     })

@@ -1,7 +1,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use smol_str::SmolStr;
 
-use super::{LatenessSummary, NodeReport, PartOfFleet, Standstill};
+use super::recording::{self, Recording};
+use super::{LatenessSummary, NodeReport, PartOfFleet, Standstill, label};
 use crate::adaptation::AdaptationReport;
 use crate::journal::Journal;
 
@@ -40,13 +42,17 @@ pub struct RunReport {
     /// The node of the fleet that ran; `None` where all of it did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<PartOfFleet>,
+    /// What `saoms view` shows; `None` where nobody recorded it. It is not read back: it may be large.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "recording::ignored")]
+    pub recording: Option<Recording>,
     /// The nodes whose reports were joined to this one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub nodes: Vec<NodeReport>,
 }
 
 impl RunReport {
-    /// The same report without the records of the journal and the list of events, whose counts stay.
+    /// The same report without the records of the journal and the list of events, whose counts stay, and without the
+    /// recording.
     #[must_use]
     pub fn without_records(&self) -> RunReport {
         let RunReport { seed, time_s, periods, sections, components, journal, adaptation, .. } = self;
@@ -63,6 +69,7 @@ impl RunReport {
             outcome: self.outcome.clone(),
             trace_hash: self.trace_hash.clone(),
             part: self.part.clone(),
+            recording: None,
             nodes: self.nodes.clone(),
         }
     }
@@ -80,12 +87,14 @@ impl RunReport {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ComponentReport {
     /// Its path in the composite.
-    pub name: String,
+    #[serde(with = "label")]
+    pub name: SmolStr,
     /// Its `ID`; a passive component has none.
-    #[serde(default)]
-    pub id: Option<String>,
+    #[serde(default, with = "label::optional")]
+    pub id: Option<SmolStr>,
     /// Its class.
-    pub class: String,
+    #[serde(with = "label")]
+    pub class: SmolStr,
     /// Number of executions begun.
     pub executions: u64,
     /// Number of due executions that were left out, because the one before had not started in time.
@@ -104,7 +113,7 @@ pub struct ComponentReport {
     pub busy: u64,
     /// Number of new instances that replaced a failed one.
     pub restarts: u32,
-    /// Number of replacements by a new build of its class (`saoms run --reload`).
+    /// Number of replacements by a new instance in changes of the fleet (`saoms apply`, `saoms run --reload`).
     #[serde(default)]
     pub replaced: u32,
     /// Number of failures, by an error or a panic.

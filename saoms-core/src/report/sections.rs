@@ -1,4 +1,4 @@
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use saoms_api::ReportValue;
 use saoms_api::extension::RunSummary;
@@ -10,6 +10,16 @@ pub struct Sections {
     entries: BTreeMap<String, Entry>,
     /// The paths that changed since they were asked for, where somebody asks.
     changed: Option<BTreeSet<String>>,
+    /// Where somebody asks, what components have counted in the code that they ran last, by their numbers.
+    in_code: HashMap<u32, CountsInCode>,
+}
+
+/// What code of a component has counted.
+#[derive(Clone, Debug, Default)]
+struct CountsInCode {
+    /// The number of that code, for this component.
+    code: u64,
+    counts: Vec<(String, i64)>,
 }
 
 /// What stands at a path, for the next program.
@@ -54,7 +64,7 @@ impl Sections {
     pub fn with_registered_counts() -> Sections {
         let counts = RunSummary::linked().into_iter().flat_map(|summary| summary.counts);
         let entries = counts.map(|path| ((*path).to_owned(), Entry::Count(0))).collect();
-        Sections { entries, changed: None }
+        Sections { entries, changed: None, in_code: HashMap::new() }
     }
 
     /// Notes from now on what changes.
@@ -62,17 +72,48 @@ impl Sections {
         self.changed = Some(BTreeSet::new());
     }
 
-    /// What changed since this was asked last.
-    pub(crate) fn take_changed(&mut self) -> Vec<(String, PartOfReport)> {
-        let changed = self.changed.as_mut().map(std::mem::take).unwrap_or_default();
+    /// What changed since this was asked last, without what code has counted that still runs, by the number of its
+    /// component and its own: it counts as not begun.
+    pub(crate) fn take_changed(&mut self, runs: impl Fn(u32, u64) -> bool) -> Vec<(String, PartOfReport)> {
+        let Some(changed) = &mut self.changed else { return Vec::new() };
+        self.in_code.retain(|component, in_code| runs(*component, in_code.code));
+        let mut too_early: BTreeMap<&str, i64> = BTreeMap::new();
+        for (path, more) in self.in_code.values().flat_map(|in_code| &in_code.counts) {
+            *too_early.entry(path).or_default() += more;
+        }
+        // These are asked for again: they change once the code has returned.
+        let again = too_early.keys().map(|path| (*path).to_owned()).collect();
+        let changed = std::mem::replace(changed, again);
         let part = |path: String| {
+            let more = too_early.get(path.as_str()).copied().unwrap_or_default();
             let part = match self.entries.get(&path)? {
-                Entry::Count(count) => PartOfReport { is_count: true, value: Value::from(*count) },
+                Entry::Count(count) => PartOfReport { is_count: true, value: count.saturating_sub(more).into() },
                 Entry::Value(value) => PartOfReport { is_count: false, value: json(value) },
             };
             Some((path, part))
         };
         changed.into_iter().filter_map(part).collect()
+    }
+
+    /// Adds to a count for code of a component that still runs; see [`add`](Sections::add).
+    pub(crate) fn add_in_code(&mut self, path: &str, more: i64, (component, code): (u32, u64)) -> bool {
+        let has_room = self.add(path, more);
+        if has_room && self.changed.is_some() {
+            let in_code = self.in_code.entry(component).or_default();
+            if in_code.code != code {
+                *in_code = CountsInCode { code, counts: Vec::new() };
+            }
+            match in_code.counts.iter_mut().find(|(known, _)| known == path) {
+                Some((_, count)) => *count = count.saturating_add(more),
+                None => in_code.counts.push((path.to_owned(), more)),
+            }
+        }
+        has_room
+    }
+
+    /// Forgets what code of a component has counted that still runs: it is taken back.
+    pub(crate) fn forget_in_code(&mut self, component: u32) {
+        self.in_code.remove(&component);
     }
 
     /// Puts back what an earlier program had.

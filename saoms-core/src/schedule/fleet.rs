@@ -113,7 +113,7 @@ impl RunningFleet {
             let recalled = engine.memory.recalled.as_ref();
             recalled.map(|recalled| recalled.components().map(str::to_owned).collect::<Vec<_>>())
         });
-        change::apply(shared, assembly)?;
+        change::start(shared, assembly)?;
         store_writer::note_unused(shared, &remembered.unwrap_or_default());
         Ok(fleet)
     }

@@ -1,4 +1,5 @@
 mod commit;
+mod web;
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,7 +13,8 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
 
 pub use self::commit::{NotCommitted, Together};
-use super::change::{self, ChangeError, Changed, StartError, Takeover};
+pub use self::web::OfferedService;
+use super::change::{self, ChangeError, ChangeOptions, Changed, PlannedChanges, StartError, Takeover};
 use super::drive::store_writer;
 use super::engine::RunPhase;
 use super::engine::lifecycle::Request;
@@ -98,27 +100,36 @@ impl Handle {
         Ok(engine.slots[index as usize].is_scheduled())
     }
 
+    /// What [`apply`](Handle::apply) would do. It compares with what the fleet has now, with the values that operators
+    /// have [set](Handle::set), and changes nothing.
+    pub fn plan(&self, assembly: &Assembly) -> PlannedChanges {
+        change::plan(&self.shared, assembly)
+    }
+
     /// Changes the fleet to that of an assembly: components whose paths differ end and start, components that differ
-    /// are replaced, and all others continue. Wires lead to components of the assembly.
+    /// are replaced, and all others continue. Those that differ in live properties alone take their values and
+    /// continue, too. Wires lead to components of the assembly.
     ///
     /// All new instances initialize first; then they take part from one instant on, and removed components shut down. A
     /// replaced component [saves](saoms_api::Component::save) the state for its successor; a component of another class
-    /// starts without it.
+    /// starts without it, which the options have to allow.
     ///
     /// # Errors
-    /// The fleet is unchanged: a component cannot be constructed or initialized, cannot be replaced or ended now, or
-    /// the run ends.
-    pub fn apply(&self, assembly: &Assembly) -> Result<Changed, ChangeError> {
-        change::apply(&self.shared, assembly.clone())
+    /// The fleet is unchanged: a component cannot be constructed or initialized, refuses a value, would lose its state,
+    /// cannot be replaced or ended now, another change is being made, somebody changed the fleet while this one waited
+    /// for components that leave, whoever asked for it took it back, or the run ends.
+    pub fn apply(&self, assembly: &Assembly, options: ChangeOptions) -> Result<Changed, ChangeError> {
+        change::apply(&self.shared, assembly, options)
     }
 
     /// Replaces a component by one of a new build of its class, as [`apply`](Handle::apply) does. The targets of its
-    /// wires are the same as at the start; its task settings (period, delay, policies) stay.
+    /// wires are the same as at the start; its task settings (period, delay, policies) stay. `by` is who wants it, for
+    /// the journal.
     ///
     /// # Errors
     /// As [`apply`](Handle::apply), or there is no such component.
-    pub fn replace(&self, spec: ComponentSpec) -> Result<Takeover, ChangeError> {
-        change::replace(&self.shared, spec)
+    pub fn replace(&self, spec: ComponentSpec, by: Option<&str>) -> Result<Takeover, ChangeError> {
+        change::replace(&self.shared, spec, by)
     }
 
     /// Gives a component a new value of a property that its class declares `live`, as text: it takes the value between
@@ -262,7 +273,9 @@ impl Handle {
     }
 
     /// Lets changes that belong together be in the memory together: until the returned value is dropped, there is no
-    /// state of the fleet that a later program could go on from. It is for a moment.
+    /// state of the fleet that a later program could go on from. It is for a moment. A run that ends meanwhile takes
+    /// still what comes from outside, and waits for [`Settings::together`](super::Settings::together) at most before it
+    /// makes its last state; beyond that there is none, and a later program goes on from the one before.
     pub fn together(&self) -> Together {
         commit::together(&self.shared)
     }
@@ -312,7 +325,8 @@ impl Handle {
     }
 
     /// A snapshot of the fleet with what each component says of itself. Components are asked between their executions,
-    /// at most ten times a second, and only when somebody wants to know. One that does not answer within 50 ms, because
+    /// at most ten times a second, and only when somebody wants to know; for observers of samples as often as they
+    /// want. One that does not answer within 50 ms, because
     /// its code runs, is shown with what it said before.
     pub fn status(&self) -> FleetStatus {
         let shared = &self.shared;

@@ -89,11 +89,40 @@ impl Engine {
         matches!(self.phase, RunPhase::Stopping | RunPhase::Ended)
     }
 
+    /// True if no time of the run passes: somebody pauses it, or does not let virtual time advance. At a slow speed it
+    /// passes.
+    pub(super) fn stands_still(&self, now: u64) -> bool {
+        now >= self.hold || !self.real && now >= self.pause
+    }
+
     /// Lets the pace count from the next moment on.
     pub(super) fn restart_pace(&mut self) {
         if let Some(pace) = &mut self.pace {
             pace.since = None;
         }
+    }
+
+    /// Lets the time of the run go on, if it pauses.
+    pub(super) fn end_pause(&mut self) {
+        if self.hold == NEVER {
+            return;
+        }
+        let now = self.clock.now();
+        self.clock.go_on();
+        self.hold = NEVER;
+        // The clock that went on in the pause goes back: code that began meanwhile would be of the future.
+        for slot in self.slots.iter_mut().filter(|slot| slot.out_since != NEVER && slot.out_since > now) {
+            if slot.hangs_since == slot.out_since {
+                slot.hangs_since = now;
+            }
+            slot.out_since = now;
+        }
+    }
+
+    /// The time at which code of a component begins, by the clock that goes on in a pause: hardware moves then, too.
+    #[inline]
+    pub(super) fn begin_of_code(&self, now: u64) -> u64 {
+        if self.real && self.hold != NEVER { self.clock.now_without_pause() } else { now }
     }
 
     fn note_hold(&mut self, now: u64, text: String) {
@@ -128,8 +157,7 @@ pub(super) fn resume(shared: &Shared) -> Result<(), HoldError> {
     }
     if engine.hold != NEVER {
         let now = shared.clock.now();
-        shared.clock.go_on();
-        engine.hold = NEVER;
+        engine.end_pause();
         engine.restart_pace();
         engine.note_hold(now, "resumed".to_owned());
         engine.wake = true;

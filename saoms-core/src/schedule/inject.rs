@@ -13,7 +13,7 @@ use saoms_api::host::SharedMessage;
 use saoms_api::{Cause, Header, Level, Time};
 use saoms_lang::assembly::{ComponentSpec, fault_subjects};
 use saoms_lang::schema::Schema;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 pub use self::error::InjectError;
 use super::engine::{Engine, RunPhase};
@@ -31,9 +31,10 @@ pub(in crate::schedule) const OUTSIDE: u32 = u32::MAX;
 /// The name of that sender, which no component can have.
 pub(super) const OUTSIDE_NAME: &str = network::FROM_OUTSIDE;
 
-/// True for the name under which the journal has what came from outside the fleet.
-pub fn is_from_outside(component: &str) -> bool {
-    component == OUTSIDE_NAME
+/// True for a record of what came from outside the fleet and can happen again, by the name of its component and its id,
+/// which journals of earlier versions lack.
+pub fn is_from_outside(component: &str, record: Option<&str>) -> bool {
+    component == OUTSIDE_NAME && record.is_none_or(|id| id == FROM_OUTSIDE)
 }
 
 /// Number of the fleet's longest periods after an injection before the run may end for want of work: a message needs
@@ -77,8 +78,9 @@ pub(super) struct Injections {
     commits: usize,
     /// Number of holds that keep the run from ending for want of work.
     pub(super) holds: usize,
-    /// Time since which messages wait for room in the queues of their readers.
+    /// Time since which messages wait for room in the queues of their readers, and until when.
     held_since: Option<u64>,
+    held_until: u64,
 }
 
 enum Due {
@@ -174,19 +176,31 @@ impl Injections {
         }
     }
 
-    /// Lets what is due wait until then, in its order, but for commits: they have an order of their own, in which what
-    /// waits for them leaves the program, and take no room.
+    /// Lets what is due wait until then, in its order, with the messages and events that are due meanwhile. Commits
+    /// have an order of their own, in which what waits for them leaves the program, and take no room.
     fn postpone(&mut self, now: u64, until: u64) {
-        let later = self.waiting.split_off(&(now.saturating_add(1), 0));
-        let held = std::mem::replace(&mut self.waiting, later);
-        let moved = held.into_iter().map(|((when, number), due)| match due {
-            Due::Commit { .. } => ((when, number), due),
-            _ => ((until, number), due),
-        });
-        self.waiting.extend(moved);
+        let later = self.waiting.split_off(&(until.saturating_add(1), 0));
+        for ((when, number), due) in std::mem::replace(&mut self.waiting, later) {
+            let is_held = match due {
+                Due::Commit { .. } => false,
+                Due::Message { .. } | Due::Event { .. } => true,
+                // What was held before stays in its order.
+                _ => when <= now || when == self.held_until || when == until,
+            };
+            if is_held {
+                self.count += 1;
+                self.waiting.insert((until, self.count), due);
+            } else {
+                self.waiting.insert((when, number), due);
+            }
+        }
+        self.held_until = until;
     }
 
     fn add(&mut self, when: u64, due: Due) {
+        // It comes after those that came before it.
+        let is_held = self.held_since.is_some() && matches!(due, Due::Message { .. } | Due::Event { .. });
+        let when = if is_held { when.max(self.held_until) } else { when };
         self.count += 1;
         self.faults += usize::from(matches!(due, Due::Fault(..)));
         self.commits += usize::from(matches!(due, Due::Commit { .. }));
@@ -199,7 +213,7 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
     let Injection { topic, content, at, text } = injection;
     let (id, schema) = {
         let engine = shared.lock();
-        if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
+        if engine.is_closed() {
             return Err(InjectError::Ending);
         }
         let id = engine.topic(&topic)?;
@@ -228,17 +242,13 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
         }
     }
     let (key, place) = (schema.key(&bytes), schema.place(&bytes));
-    add(shared, at, Due::Message { topic: id, bytes, key, place, text });
-    Ok(())
+    let is_taken = add(shared, at, Due::Message { topic: id, bytes, key, place, text });
+    if is_taken { Ok(()) } else { Err(InjectError::Ending) }
 }
 
-/// Queues the messages of an event, which were checked.
+/// Queues the messages of an event, which were checked. False if the run ends.
 pub(super) fn raise(shared: &Shared, messages: Vec<EventMessage>, at: Option<Time>, text: String) -> bool {
-    let is_ending = matches!(shared.lock().phase, RunPhase::Stopping | RunPhase::Ended);
-    if !is_ending {
-        add(shared, at, Due::Event { messages, text });
-    }
-    !is_ending
+    add(shared, at, Due::Event { messages, text })
 }
 
 /// Checks a fault and queues it. `text` is its line for the journal.
@@ -250,7 +260,7 @@ pub(super) fn add_fault(
 ) -> Result<(), RaiseError> {
     let members: Vec<Arc<ComponentSpec>> = {
         let engine = shared.lock();
-        if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
+        if engine.is_closed() {
             return Err(RaiseError::Ending);
         }
         engine.members_everywhere().map(|(_, spec)| spec).collect()
@@ -258,8 +268,8 @@ pub(super) fn add_fault(
     let of_site = members.iter().map(AsRef::as_ref).filter(|spec| site.is_empty() || spec.site == site);
     fault_subjects(of_site).check(call).map_err(RaiseError::Wrong)?;
     let fault = TimedFault { at: at.unwrap_or_default(), site: site.to_owned(), call: call.clone() };
-    add(shared, at, Due::Fault(Box::new(fault), text));
-    Ok(())
+    let is_taken = add(shared, at, Due::Fault(Box::new(fault), text));
+    if is_taken { Ok(()) } else { Err(RaiseError::Ending) }
 }
 
 /// Batches of components, with their numbers, are committed.
@@ -280,18 +290,28 @@ pub(super) fn add_commits(shared: &Shared, batches: &[(u32, u64)]) {
     shared.release(engine);
 }
 
-/// Queues an order, which was checked.
-pub(super) fn add_order(shared: &Shared, at: Option<Time>, order: PendingOrder) {
-    add(shared, at, Due::Order(Box::new(order)));
-}
-
-fn add(shared: &Shared, at: Option<Time>, due: Due) {
+/// Queues what was checked. False if the run has begun to end since: nobody would hear of it.
+fn add(shared: &Shared, at: Option<Time>, due: Due) -> bool {
     let mut engine = shared.lock();
-    engine.add_due(shared.clock.now(), at, due);
+    let is_taken = !engine.is_closed();
+    if is_taken {
+        engine.add_due(shared.clock.now(), at, due);
+    }
     shared.release(engine);
+    is_taken
 }
 
 impl Engine {
+    /// True if the run ends, so that nothing that comes from outside takes effect, nor is kept for the next program.
+    pub(super) fn is_closed(&self) -> bool {
+        matches!(self.phase, RunPhase::Stopping | RunPhase::Ended) && !self.memory.is_open()
+    }
+
+    /// Queues an order, which was checked.
+    pub(super) fn add_order(&mut self, now: u64, at: Option<Time>, order: PendingOrder) {
+        self.add_due(now, at, Due::Order(Box::new(order)));
+    }
+
     fn add_due(&mut self, now: u64, at: Option<Time>, due: Due) {
         let when = at.map_or(0, Time::as_nanos).max(self.next_instant(now));
         if !matches!(due, Due::Commit { .. }) {
@@ -440,11 +460,18 @@ impl Engine {
 
     /// Writes an event to the journal, as the root of what follows from it.
     pub(super) fn record_outside(&mut self, time: u64, by: &str, text: String) -> Cause {
-        self.record_notice(time, by, (FROM_OUTSIDE, text), Cause::default())
+        self.record_notice(time, by, (FROM_OUTSIDE, text, Map::new()), Cause::default())
     }
 
-    /// Writes a symptom that no component wrote to the journal: with its id, and what it follows from.
-    pub(super) fn record_notice(&mut self, time: u64, by: &str, what: (&'static str, String), cause: Cause) -> Cause {
+    /// Writes a symptom that no component wrote to the journal: with its id, its text and its values, and what it
+    /// follows from.
+    pub(super) fn record_notice(
+        &mut self,
+        time: u64,
+        by: &str,
+        what: (&'static str, String, Map<String, Value>),
+        cause: Cause,
+    ) -> Cause {
         // Components draw the numbers of their records from the same counter.
         let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
         let entry = JournalEntry::from_outside(id, Time::from_nanos(time), by, what, cause);

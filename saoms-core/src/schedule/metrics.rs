@@ -20,6 +20,7 @@ pub(super) fn metrics(status: FleetStatus, shared: &Shared) -> FleetMetrics {
         numbers,
         loops: shared.look(Engine::loops),
         queues: shared.look(Engine::queues),
+        networks: shared.look(|engine| engine.networks.lost().map(|(url, lost)| (url.to_owned(), lost)).collect()),
     }
 }
 

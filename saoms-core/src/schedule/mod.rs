@@ -31,16 +31,19 @@ mod tests;
 mod topics;
 mod why;
 
-pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
+pub use change::{
+    ChangeError, ChangeOptions, ChangeWithdrawal, Changed, HandedOver, PlannedChanges, PlannedDifference,
+    PlannedMember, PlannedReplacement, PlannedValue, SetError, StartError, Takeover,
+};
 pub use engine::memory::SharedText;
 pub use fleet::RunningFleet;
-pub use handle::{Handle, Hold, NotCommitted, Together};
+pub use handle::{Handle, Hold, NotCommitted, OfferedService, Together};
 pub use hold::{HoldError, Speed};
 pub use inject::{InjectError, InjectedContent, Injection, is_from_outside};
 pub use members::UnknownComponent;
 pub use metrics::TimerSign;
 pub use networks::{NetworkHooks, NetworkedFleet};
-pub use order::{Order, OrderError, OrderTicket, TimedOrder};
+pub use order::{Order, OrderError, OrderTicket, OrderWithdrawal, TimedOrder};
 pub use os::realtime::RealtimeError;
 pub use os::thread::start_thread;
 pub use settings::{ClockKind, Settings};

@@ -38,6 +38,8 @@ pub struct Settings {
     /// In virtual time, the time from the end of an execution until what it [keeps](saoms_api::Context::keep) is
     /// committed, as a disk takes it.
     pub commit_delay: Duration,
+    /// Longest time for which the end of a run waits for what [belongs together](super::Handle::together).
+    pub together: Duration,
     /// Faults that are put into the run on purpose.
     pub faults: Vec<TimedFault>,
 }
@@ -68,6 +70,7 @@ impl Default for Settings {
             ends_at_standstill: false,
             journal: 65_536,
             commit_delay: Duration::from_millis(5),
+            together: Duration::from_secs(1),
             faults: Vec::new(),
         }
     }

@@ -1,5 +1,5 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -7,6 +7,7 @@ use saoms_api::Time;
 
 use super::drive::pulse::Pulse;
 use super::engine::Engine;
+use super::engine::sampling::Sampling;
 use super::names::SlotNames;
 use super::networks::elsewhere::RemoteNames;
 use super::os::clock::Clock;
@@ -20,6 +21,7 @@ use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunP
 use crate::report::Sections;
 use crate::status::summaries;
 use crate::store::StoreQueue;
+use crate::web::WebClient;
 
 /// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while
 /// component code runs or a thread sleeps.
@@ -37,7 +39,7 @@ pub(super) struct Shared {
     /// Signals that an awaited body has returned.
     returned: Condvar,
     pub(super) settings: Settings,
-    pub(super) clock: Clock,
+    pub(super) clock: Arc<Clock>,
     /// Events and messages on their way to the observers.
     pub(super) events: EventQueue,
     pub(super) observers: Observers,
@@ -48,6 +50,8 @@ pub(super) struct Shared {
     /// Gate at which the thread that waits for the end sleeps.
     pub(super) end: Gate,
     pub(super) pulse: Pulse,
+    /// Who calls services of the web.
+    pub(super) web: OnceLock<Arc<dyn WebClient>>,
     /// Where components keep what is to outlive the program, and the thread that writes it.
     pub(super) store: OnceLock<Arc<StoreQueue>>,
     pub(super) store_thread: Mutex<Option<JoinHandle<()>>>,
@@ -69,10 +73,12 @@ pub(super) struct Shared {
 
 impl Shared {
     pub(super) fn new(settings: Settings, clock: Clock, observers: Vec<Arc<dyn Observer>>) -> Shared {
-        let mut engine = Engine::new(&settings);
+        let clock = Arc::new(clock);
+        let mut engine = Engine::new(&settings, &clock);
         let observers = Observers::new(observers);
         let interest = observers.interest();
         let events = EventQueue::new(interest, clock.is_virtual());
+        engine.sampling = Sampling::of(observers.sample_rates());
         if interest.journal {
             engine.records = Some(Arc::new(RecordQueue::new(clock.is_virtual())));
         }
@@ -94,6 +100,7 @@ impl Shared {
             spare: Gate::default(),
             end: Gate::default(),
             pulse: Pulse::default(),
+            web: OnceLock::new(),
             store: OnceLock::new(),
             store_thread: Mutex::default(),
             work: Condvar::new(),
@@ -128,9 +135,7 @@ impl Shared {
         }
         // Left in order, so it is left while the engine is locked.
         let networks = &mut engine.networks;
-        if !networks.waiting.is_empty() {
-            networks.leave();
-        }
+        let left = if networks.waiting.is_empty() { Vec::new() } else { networks.leave() };
         let notifications = std::mem::take(&mut engine.notifications);
         let is_delivering = !notifications.is_empty();
         if is_delivering {
@@ -148,6 +153,9 @@ impl Shared {
         if wake {
             self.timer.wake();
         }
+        // A real-time thread waits for no locks of a transport, whose threads have a lower priority.
+        let may_send = !self.settings.realtime;
+        left.iter().for_each(|port| port.send(may_send));
     }
 
     /// Waits until all threads have queued their events at the end of the run, and closes the queue.
@@ -206,6 +214,15 @@ impl Shared {
     /// Locks out other changes of the fleet.
     pub(super) fn lock_changes(&self) -> MutexGuard<'_, ()> {
         self.changes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Locks out other changes of the fleet; `None` while one is being made.
+    pub(super) fn try_lock_changes(&self) -> Option<MutexGuard<'_, ()>> {
+        match self.changes.try_lock() {
+            Ok(guard) => Some(guard),
+            Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => None,
+        }
     }
 
     /// Unlocks the engine until a body returns, or until the time is over.

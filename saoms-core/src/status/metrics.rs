@@ -15,4 +15,6 @@ pub struct FleetMetrics {
     pub loops: Vec<LoopCounts>,
     /// Events that wait, with the name of their topic. A component whose code runs is left out.
     pub queues: Vec<(String, TopicReaderStatus)>,
+    /// The url of each network, and the number of messages that were lost on it.
+    pub networks: Vec<(String, u64)>,
 }

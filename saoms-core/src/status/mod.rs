@@ -3,10 +3,11 @@
 mod metrics;
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use saoms_api::extension::RunSummary;
 use saoms_api::{Failure, ReportValue, Time};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
 pub use metrics::FleetMetrics;
@@ -60,8 +61,9 @@ pub struct ComponentStatus {
     pub in_code_s: Option<f64>,
     /// What it waits for, if it takes no work by itself ([`Component::waits_for`](saoms_api::Component::waits_for)).
     pub waits_for: Option<String>,
-    /// What it says of itself ([`Component::status`](saoms_api::Component::status)).
-    pub values: Map<String, Value>,
+    /// What it says of itself ([`Component::status`](saoms_api::Component::status)), shared by all who look.
+    #[serde(serialize_with = "shared")]
+    pub values: Arc<Map<String, Value>>,
     /// Time of the run in seconds at which it said so; `null` if it was never asked.
     pub values_s: Option<f64>,
 }
@@ -145,7 +147,11 @@ pub struct TopicReaderStatus {
 pub(crate) struct Description {
     pub(crate) at: Time,
     pub(crate) waits_for: Option<String>,
-    pub(crate) values: Map<String, Value>,
+    pub(crate) values: Arc<Map<String, Value>>,
+}
+
+fn shared<S: Serializer>(values: &Arc<Map<String, Value>>, serializer: S) -> Result<S::Ok, S::Error> {
+    values.as_ref().serialize(serializer)
 }
 
 /// The values of a status by their names.

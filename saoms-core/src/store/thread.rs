@@ -46,6 +46,8 @@ pub(crate) struct StoreQueue {
     wake: Condvar,
     /// Number of bytes of all that is not on the disk, also of what is being written.
     bytes: AtomicUsize,
+    /// The same of what leaves the program once something is.
+    outgoing: AtomicUsize,
     /// True while the disk has no space beyond what is reserved.
     lacks_space: AtomicBool,
     failure: OnceLock<String>,
@@ -103,6 +105,16 @@ impl StoreQueue {
         bytes
     }
 
+    /// Takes bytes back that were announced.
+    pub(crate) fn withdraw(&self, bytes: usize) {
+        self.bytes.fetch_sub(bytes, Ordering::Relaxed);
+    }
+
+    /// Notes the number of bytes that leave the program once something is on the disk.
+    pub(crate) fn note_outgoing(&self, bytes: usize) {
+        self.outgoing.store(bytes, Ordering::Relaxed);
+    }
+
     /// Hands a batch over whose changes were announced.
     pub(crate) fn put_announced(&self, batch: Batch) {
         self.lock().batches.push(batch);
@@ -114,7 +126,8 @@ impl StoreQueue {
         if let Some(failure) = self.failure.get() {
             return Some(failure.clone());
         }
-        let is_behind = self.bytes.load(Ordering::Relaxed) > MOST_WAITING;
+        let bytes = self.bytes.load(Ordering::Relaxed) + self.outgoing.load(Ordering::Relaxed);
+        let is_behind = bytes > MOST_WAITING;
         is_behind.then(|| {
             let most = MOST_WAITING >> 20;
             format!("more than {most} MiB wait to be written to the state folder: its disk is full or too slow")
@@ -156,7 +169,9 @@ pub(super) struct Writer<'a, F, E> {
 
 impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
     pub(super) fn write(&mut self) {
-        self.look_for_space();
+        if self.look_for_space().is_err() {
+            return;
+        }
         let mut waiting = self.queue.lock();
         loop {
             if !waiting.batches.is_empty() {
@@ -169,7 +184,9 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
                     self.events
                         .complain(format!("the log of the state folder cannot be written anew, and grows: {error}"));
                 }
-                self.look_for_space();
+                if self.look_for_space().is_err() {
+                    return;
+                }
                 waiting = self.queue.lock();
             } else if waiting.is_closed {
                 return;
@@ -225,9 +242,10 @@ impl<F: LogFile, E: StoreEvents> Writer<'_, F, E> {
         self.queue.fail(&text, self.events);
     }
 
-    fn look_for_space(&mut self) {
-        let has_space = self.log.reserve();
+    fn look_for_space(&mut self) -> Result<(), ()> {
+        let has_space = self.log.reserve().map_err(|error| self.fail(&error))?;
         self.tell((!has_space).then_some(ALMOST_FULL));
+        Ok(())
     }
 
     fn tell(&mut self, text: Option<&'static str>) {

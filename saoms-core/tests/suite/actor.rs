@@ -67,6 +67,9 @@ pub(crate) struct Script {
     /// What it waits for.
     #[property(default = "")]
     waits: String,
+    /// What `status` does instead of an answer: `twice` gives a name to two values, and any other text is a panic.
+    #[property(default = "")]
+    says: String,
     /// The milliseconds that `status` takes.
     #[property(default = 0)]
     status: u32,
@@ -135,6 +138,11 @@ macro_rules! actor {
 
             fn status(&self) -> Vec<(String, ReportValue)> {
                 std::thread::sleep(Duration::from_millis(self.script.status.into()));
+                match self.script.says.as_str() {
+                    "" => {}
+                    "twice" => return ReportValue::named([("waits", 1.into()), ("waits", 2.into())]),
+                    other => panic!("{other}"),
+                }
                 ReportValue::named([("waits", self.script.waits.as_str().into())])
             }
         }

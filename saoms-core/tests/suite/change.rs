@@ -1,19 +1,20 @@
 //! Fleets that change while they run.
 
 use std::fmt::Write;
+use std::thread;
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_core::schedule::{ChangeError, Changed, Handle, Settings, Takeover};
+use saoms_core::schedule::{ChangeError, ChangeOptions, Changed, Handle, Settings, Takeover};
 
-use crate::fleet::{assembly, of, outcome, simulated, start, unindent};
+use crate::fleet::{assembly, of, outcome, real, simulated, start, unindent};
 
 fn at(milliseconds: u64) -> Time {
     Time::from_nanos(milliseconds * 1_000_000)
 }
 
 fn apply(handle: &Handle, fleet: &str) -> Result<Changed, ChangeError> {
-    handle.apply(&assembly(fleet))
+    handle.apply(&assembly(fleet), ChangeOptions::allowing_loss())
 }
 
 /// Runs a fleet in virtual time that becomes another one at each of these times, and gives what was recorded and the
@@ -25,7 +26,7 @@ fn run(fleet: &str, changes: &[(u64, &str)], limit: u64) -> (String, String) {
     for (time, wanted) in changes {
         fleet.run_until(at(*time));
         match apply(&fleet.handle(), wanted) {
-            Ok(Changed { added, removed, replaced }) => {
+            Ok(Changed { added, removed, replaced, .. }) => {
                 let replaced: Vec<_> = replaced.iter().map(|(name, how)| format!("{name} {how:?}")).collect();
                 let words = [added.join(" "), removed.join(" "), replaced.join(" ")];
                 writeln!(results, "+[{}] -[{}] ~[{}]", words[0], words[1], words[2]).unwrap();
@@ -67,7 +68,7 @@ fn components_join_end_and_are_replaced_and_the_others_go_on() {
          [0.015 s] C: hears [b]
          [0.020 s] A: A 2 every 10ms
          [0.022 s] D: started
-         [0.022 s] C: is replaced by its new build, and starts without the earlier state
+         [0.022 s] C: is replaced, and starts without the earlier state
          [0.022 s] B: bye
          [0.022 s] B: has shut down
          [0.025 s] C: hears [b, d, bye]
@@ -108,7 +109,7 @@ fn components_that_did_not_join_are_not_in_the_report() {
     let wanted = "A actor period=10\nX actor period=10 made=nothing\nY actor period=10";
     assert!(apply(&fleet.handle(), wanted).is_err());
     assert!(fleet.handle().is_running("Y").is_err());
-    assert!(fleet.handle().apply(&assembly("A actor period=10\nY actor period=10")).is_ok());
+    assert!(fleet.handle().apply(&assembly("A actor period=10\nY actor period=10"), ChangeOptions::default()).is_ok());
     assert!(fleet.handle().is_running("Y").unwrap());
     let report = fleet.run_to_end();
     let names: Vec<_> = report.components.iter().map(|one| (one.name.as_str(), one.executions)).collect();
@@ -135,8 +136,8 @@ fn new_components_call_each_other_and_those_that_are_replaced() {
          [0.005 s] P: new
          [0.005 s] Q: ready
          [0.005 s] Q: started
-         [0.005 s] P: is replaced by its new build, and starts without the earlier state
-         [0.005 s] A: is replaced by its new build, and starts without the earlier state
+         [0.005 s] P: is replaced, and starts without the earlier state
+         [0.005 s] A: is replaced, and starts without the earlier state
          [0.010 s] P: new
          [0.010 s] Q: asked
          [0.010 s] A: is told \"something from Q\"
@@ -166,7 +167,7 @@ fn a_component_of_another_class_begins_anew_and_its_callers_find_it() {
          [0.000 s] B: started
          [0.000 s] A: is told \"something from P\"
          [0.005 s] P: started
-         [0.005 s] A: is replaced by its new build, and starts without the earlier state
+         [0.005 s] A: is replaced, and starts without the earlier state
          [0.005 s] P: end of p
          [0.005 s] P: has shut down
          [0.010 s] A: is told \"something from P\"
@@ -229,4 +230,40 @@ fn a_component_whose_code_runs_is_waited_for_and_nothing_changes_when_it_does_no
     handle.stop();
     assert_eq!(fleet.run_to_end().components.len(), 2);
     assert_eq!(apply(&handle, ""), Err(ChangeError::Ending));
+}
+
+#[test]
+fn a_component_keeps_its_place_when_one_of_another_class_cannot_take_it() {
+    let (fleet, _) = start("A actor period=10\nB actor period=10", simulated(30));
+    let fleet = fleet.unwrap();
+    fleet.run_until(at(15));
+    let failed = apply(&fleet.handle(), "A callee first=[fail no room]\nB actor period=10").unwrap_err();
+    assert_eq!(failed.to_string(), "component `A` of class `callee` could not start: no room");
+    // It is found by its path.
+    assert!(fleet.handle().is_running("A").unwrap());
+    fleet.handle().unschedule("A").unwrap();
+    let report = fleet.run_to_end();
+    assert_eq!((of(&report, "A").executions, of(&report, "B").executions), (2, 3));
+}
+
+#[test]
+fn one_that_did_not_run_does_not_start_in_the_middle_of_a_change() {
+    let (fleet, diary) = start("A actor period=2 startup=false each=[log old]\nB actor period=2", real(60_000));
+    let fleet = fleet.unwrap();
+    let handle = fleet.handle();
+    let wanted = "A actor period=2 startup=false each=[log new]\nB actor period=2\nX actor period=2 first=[sleep 300]";
+    thread::scope(|scope| {
+        let changed = scope.spawn(|| apply(&fleet.handle(), wanted));
+        while handle.is_running("X").is_err() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        handle.schedule("A").unwrap();
+        assert_eq!(changed.join().unwrap().unwrap().replaced, [("A".to_owned(), Takeover::Awaited)]);
+    });
+    while !diary.lines().contains("A: new") {
+        thread::sleep(Duration::from_millis(1));
+    }
+    assert!(!diary.lines().contains("A: old"), "{}", diary.lines());
+    handle.stop();
+    fleet.run_to_end();
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use saoms_api::host::Registration;
 use saoms_api::{Class, Component, Context, Failure, Own, Time};
-use saoms_core::schedule::{Order, RunningFleet};
+use saoms_core::schedule::{ChangeOptions, Order, RunningFleet};
 use saoms_lang::registry::Registry;
 
 use crate::fleet::{Diary, assembly_of, real, simulated};
@@ -159,7 +159,8 @@ fn a_component_that_hears_of_it_goes_on_also_after_a_change_of_the_fleet() {
     fleet.run_until(Time::from_nanos(10_000_000));
     assert_eq!(give(&fleet, stop(&["A"])), "[\"A\"]");
     fleet.run_until(Time::from_nanos(30_000_000));
-    fleet.handle().apply(&assembly("A listener period=10 deadline=9\nB listener period=10 delay=5")).unwrap();
+    let wanted = assembly("A listener period=10 deadline=9\nB listener period=10 delay=5");
+    fleet.handle().apply(&wanted, ChangeOptions::allowing_loss()).unwrap();
     fleet.run_until(Time::from_nanos(50_000_000));
     give(&fleet, release());
     fleet.run_to_end();

@@ -4,7 +4,8 @@
 
 use std::fmt::Write;
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use saoms_api::Properties;
 use saoms_api::host::{PropertyValue, Registration, parse_duration};
@@ -44,6 +45,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         interface: interface.to_owned(),
         targets: Vec::new(),
         elsewhere: Box::default(),
+        web: Box::default(),
         deadline: None,
     };
     let mut references = vec![wire("peer", "test.Echo"), wire("task", "unibg.robotics.tca.TaskInterface")];
@@ -99,6 +101,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         task,
         references,
         loops: std::sync::Arc::default(),
+        web: Box::default(),
     }
 }
 
@@ -142,6 +145,16 @@ impl Diary {
             writeln!(text, "{event}").unwrap();
             text
         })
+    }
+
+    /// Waits until there is a line with this text: observers are told by a thread of their own.
+    #[track_caller]
+    pub(crate) fn until(&self, what: &str) {
+        let begun = Instant::now();
+        while !self.lines().contains(what) {
+            assert!(begun.elapsed() < Duration::from_secs(20), "`{what}` is never told: {}", self.lines());
+            sleep(Duration::from_millis(1));
+        }
     }
 
     /// All events as lines.

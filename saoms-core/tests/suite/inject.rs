@@ -71,6 +71,19 @@ fn messages_wait_for_room_in_the_queues_of_their_readers() {
 }
 
 #[test]
+fn messages_that_wait_for_room_come_before_those_that_are_due_later() {
+    let (fleet, diary) = start("A actor period=10 queue=4 subscribes=[TALK] each=[hear]", simulated(200));
+    let fleet = fleet.unwrap();
+    say(&fleet.handle(), "TALK", json!({ "text": "later" }), Some(25)).unwrap();
+    for number in 0..12 {
+        say(&fleet.handle(), "TALK", json!({ "text": format!("word{number}") }), Some(15)).unwrap();
+    }
+    fleet.run_to_end();
+    let told = diary.lines();
+    assert!(told.find("word11").unwrap() < told.find("later").unwrap(), "{told}");
+}
+
+#[test]
 fn messages_are_checked_against_the_schema_of_their_topic() {
     let (fleet, _) = start(FLEET, simulated(30));
     let fleet = fleet.unwrap();
@@ -79,7 +92,7 @@ fn messages_are_checked_against_the_schema_of_their_topic() {
     assert_eq!(refused("other", json!({})), "the fleet has no topic `other`; its topics are: TALK, TABLE");
     assert_eq!(
         refused("TALK", json!({ "txt": "a" })),
-        "topic `TALK`: this is not a message `Words`: `Words` has no field `txt`; its fields are: text"
+        "topic `TALK`: this is not a message `Words`: `Words` has no field `txt`; did you mean `text`?"
     );
     assert_eq!(
         refused("TALK", json!({ "text": 7 })),

@@ -1,6 +1,7 @@
 //! A fleet with a state folder goes on where it was, after a usual end and after a kill at any moment.
 
 mod apart;
+mod ends;
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
@@ -14,7 +15,7 @@ use std::time::{Duration, Instant};
 use saoms_api::host::Registration;
 use saoms_api::{Class, Component, Context, Failure, Message, Publisher, Saved, Subscription, Time, Work};
 use saoms_core::report::{RunReport, RunStatus};
-use saoms_core::schedule::{Handle, InjectedContent, Injection, Order, RunningFleet, Settings};
+use saoms_core::schedule::{ChangeOptions, Handle, InjectedContent, Injection, Order, RunningFleet, Settings};
 use saoms_core::store::Store;
 use saoms_lang::assembly::Assembly;
 use saoms_lang::registry::Registry;
@@ -45,6 +46,9 @@ struct Teller {
     /// True if it cannot read what it saved.
     #[property(default = false)]
     forgets: bool,
+    /// It panics in each execution of this number; 0 for never.
+    #[property(default = 0)]
+    panics: u64,
     #[publishes(TALK)]
     words: Publisher<Words>,
     #[publishes(OWN)]
@@ -74,6 +78,7 @@ impl Component for Teller {
         self.told.said += 1;
         context.count("teller.said", 1);
         context.send(&self.words, Words { text: self.told.said.to_string() })?;
+        panic_sometimes(self.panics, &TELLER_EXECUTIONS);
         if let Some(book) = &self.book {
             let counted = book.echo(context, String::new())?;
             self.told.asked += 1;
@@ -92,6 +97,11 @@ impl Component for Teller {
 
     fn update(&mut self, properties: Self::Properties) -> Result<(), Failure> {
         self.mood = properties.mood;
+        Ok(())
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.info(format!("ends with {}", self.told.said));
         Ok(())
     }
 
@@ -115,10 +125,24 @@ struct Heard {
     own: i64,
 }
 
+/// Executions of the teller and of the hearer in this program.
+static TELLER_EXECUTIONS: AtomicU64 = AtomicU64::new(0);
+static HEARER_EXECUTIONS: AtomicU64 = AtomicU64::new(0);
+
+/// Panics in one of so many executions.
+fn panic_sometimes(panics: u64, executions: &AtomicU64) {
+    if panics > 0 && executions.fetch_add(1, Ordering::SeqCst) % panics == panics - 1 {
+        panic!("it was told to");
+    }
+}
+
 /// Hears the numbers, none twice and none left out, and others from outside.
 #[derive(Class)]
 #[class(name = "hearer", periodic, saves, reacts)]
 struct Hearer {
+    /// As of the teller.
+    #[property(default = 0)]
+    panics: u64,
     #[subscribes(TALK)]
     words: Subscription<Words>,
     #[subscribes(NUMBERS)]
@@ -145,10 +169,11 @@ impl Hearer {
 }
 
 impl Component for Hearer {
-    type Properties = ();
+    type Properties = saoms_api::Own<Self>;
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.hear(context)?;
+        panic_sometimes(self.panics, &HEARER_EXECUTIONS);
         if !std::mem::replace(&mut self.has_executed, true) {
             let Heard { last, numbers, own } = &self.heard;
             context.info(format!("has heard up to {last}, own {own}, {numbers:?}"));
@@ -157,7 +182,9 @@ impl Component for Hearer {
     }
 
     fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.hear(context)
+        self.hear(context)?;
+        panic_sometimes(self.panics, &HEARER_EXECUTIONS);
+        Ok(())
     }
 
     fn save(&mut self) -> Result<Saved, Failure> {
@@ -211,6 +238,8 @@ fn fleet_of(text: &str) -> Assembly {
         Registration::of::<Book>(),
         Registration::of::<apart::Clerk>(),
         Registration::of::<apart::Patient>(),
+        Registration::of::<apart::Porter>(),
+        Registration::of::<ends::Novice>(),
     ] {
         registry.add(class).unwrap();
     }
@@ -314,6 +343,37 @@ fn operators_need_not_say_again_what_they_said() {
 }
 
 #[test]
+fn what_a_change_of_the_fleet_took_back_does_not_come_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let changed = "T teller period=2 most=1000000\nD teller period=5 most=1000000";
+    run("T teller period=2\nD teller period=5", real(10_000), folder.path(), |handle| {
+        let give = |order: Order| handle.order(order, None).unwrap().wait(Duration::from_secs(5)).unwrap();
+        for component in ["T", "D"] {
+            let (component, property, value) = (component.to_owned(), "mood".to_owned(), "gay".to_owned());
+            give(Order::Set { component, property, value });
+        }
+        // One that does not run takes the new values when it starts.
+        give(Order::Stop { component: "D".to_owned() });
+        while handle.is_running("D").unwrap() {
+            sleep(Duration::from_millis(1));
+        }
+        let options = ChangeOptions { allow_loss: true, ..ChangeOptions::default() };
+        assert_eq!(handle.apply(&fleet_of(changed), options).unwrap().replaced.len(), 2);
+        handle.stop();
+    });
+    let (_, told) = run(changed, real(10_000), folder.path(), |handle| {
+        handle.schedule("D").unwrap();
+        while handle.status().components.iter().any(|one| one.report.executions == 0) {
+            sleep(Duration::from_millis(1));
+        }
+        handle.stop();
+    });
+    for component in ["T", "D"] {
+        assert!(behind(&told, &format!("{component}: has said ")).ends_with(", "), "{told}");
+    }
+}
+
+#[test]
 fn a_state_that_came_from_outside_is_there_for_who_begins_later() {
     let folder = tempfile::tempdir().unwrap();
     run(FLEET, real(10_000), folder.path(), |handle| {
@@ -375,12 +435,22 @@ fn an_answer_waits_for_the_commit() {
 
 /// The folder in which a killed program keeps its state; without it, this is no such program.
 const FOLDER: &str = "SAOMS_TEST_MEMORY";
+/// True if components of that program panic.
+const PANICS: &str = "SAOMS_TEST_MEMORY_PANICS";
 
-/// The program that [`nothing_that_was_accepted_is_lost_by_a_kill`] kills: it prints what is committed and accepted.
+/// The fleet of a killed program.
+fn fleet_that_is_killed(panics: bool) -> String {
+    let more = |panics: u64| format!(" panics={panics} restart=1ms/1000 queue=1000");
+    let [teller, hearer] = if panics { [more(7), more(5)] } else { Default::default() };
+    format!("T teller period=2 peer=B{teller}\nB book\nH hearer period=3 trigger=NUMBERS{hearer}")
+}
+
+/// The program that [`kill_at_many_moments`] kills: it prints what is committed and accepted.
 #[test]
 fn program_that_is_killed() {
     let Some(folder) = std::env::var_os(FOLDER) else { return };
-    let (fleet, diary) = start(FLEET, real(60_000), Path::new(&folder));
+    let fleet = fleet_that_is_killed(std::env::var(PANICS).as_deref() == Ok("true"));
+    let (fleet, diary) = start(&fleet, real(60_000), Path::new(&folder));
     let handle = fleet.handle();
     let mut printed = 0;
     let until = Instant::now() + Duration::from_secs(20);
@@ -403,12 +473,22 @@ fn program_that_is_killed() {
 
 #[test]
 fn nothing_that_was_accepted_is_lost_by_a_kill() {
+    kill_at_many_moments(false);
+}
+
+#[test]
+fn nothing_that_was_accepted_is_lost_by_a_kill_while_components_panic() {
+    kill_at_many_moments(true);
+}
+
+fn kill_at_many_moments(panics: bool) {
     let folder = tempfile::tempdir().unwrap();
     let mut time = Time::START;
-    let (mut committed, mut accepted) = (0, 0);
+    let (mut committed, mut accepted, mut has_panicked) = (0, 0, false);
     for milliseconds in [60, 5, 75, 90, 61, 12, 80, 66, 94, 2, 72, 69, 85, 31, 47] {
         let mut program = Command::new(std::env::current_exe().unwrap());
-        program.args(["--exact", "memory::program_that_is_killed", "--nocapture"]).env(FOLDER, folder.path());
+        program.args(["--exact", "memory::program_that_is_killed", "--nocapture"]);
+        program.env(FOLDER, folder.path()).env(PANICS, panics.to_string());
         let mut program = program.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let mut lines = BufReader::new(program.stderr.take().unwrap()).lines().map_while(Result::ok);
         let mut told: Vec<String> = Vec::new();
@@ -422,7 +502,9 @@ fn nothing_that_was_accepted_is_lost_by_a_kill() {
         program.wait().unwrap();
         told.extend(lines);
         let all = told.join("\n");
-        assert!(!all.contains("gap") && !all.contains("begins anew") && !all.contains("panicked"), "{all}");
+        assert!(!all.contains("gap") && !all.contains("begins anew"), "{all}");
+        assert!(panics || !all.contains("panicked"), "{all}");
+        has_panicked |= all.contains("it was told to");
         let begins = first_number(behind(&all, "T: has said "));
         assert!(begins >= committed, "{committed} were said and committed: {all}");
         let began = Time::from_nanos(
@@ -430,7 +512,9 @@ fn nothing_that_was_accepted_is_lost_by_a_kill() {
         );
         assert!(began >= time, "the time goes on from {time}: {all}");
         time = began;
-        let heard = behind(&all, "H: has heard up to ").split_once('[').unwrap().1.trim_end_matches(']');
+        // After each panic it says that anew.
+        let heard = all.lines().rfind(|line| line.contains("H: has heard up to ")).unwrap();
+        let heard = heard.rsplit_once('[').unwrap().1.trim_end_matches(']');
         let heard: Vec<u64> = heard.split(", ").filter_map(|number| number.parse().ok()).collect();
         let once: BTreeSet<u64> = heard.iter().copied().collect();
         assert_eq!(once.len(), heard.len(), "each once: {all}");
@@ -443,4 +527,8 @@ fn nothing_that_was_accepted_is_lost_by_a_kill() {
         }
     }
     assert!(committed > 50 && accepted > 50, "{committed} {accepted}");
+    assert_eq!(has_panicked, panics);
+    // The report has counted each execution that did not fail, once.
+    let (report, told) = run(&fleet_that_is_killed(false), real(60), folder.path(), |_| {});
+    assert_eq!(counted(&report), first_number(behind(&told, "T: ends with ")), "{told}");
 }

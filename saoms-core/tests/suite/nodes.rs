@@ -113,6 +113,10 @@ fn faults_of_messages_act_on_those_of_other_nodes() {
 struct Alone;
 
 impl NetworkHooks for Alone {
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
     fn lose(&self) {}
 
     fn control(&self, _request: ControlRequest, _reply: Reply) {}

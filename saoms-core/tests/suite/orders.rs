@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use saoms_api::Time;
 use saoms_core::report::RunReport;
-use saoms_core::schedule::Order;
+use saoms_core::schedule::{Order, OrderError};
 use serde_json::json;
 
 use crate::fleet::{outcome, real, simulated};
@@ -159,10 +159,29 @@ fn operations_are_called_by_their_declaration() {
     assert_eq!(refused("call A.echo"), format!("{signature}: field `text` of `echo` is missing"));
     assert_eq!(
         refused("call A.echo words=1"),
-        format!("{signature}: `echo` has no field `words`; its fields are: text")
+        format!("{signature}: `echo` has no field `words`; its fields are: text; field `text` of `echo` is missing")
     );
     assert!(refused("call D.echo text=1").starts_with("the fleet has no component `D`"));
     fleet.handle().stop();
     let report = fleet.run_to_end();
     assert_eq!(lines(&report)[0].1, "call A.echo text=\"hello\"");
+}
+
+#[test]
+fn an_order_that_waits_is_withdrawn_from_elsewhere_or_ends_with_the_run() {
+    let (fleet, _) = start("A actor period=10 each=[until-cancelled]\nB actor period=10", real(60_000));
+    let handle = fleet.handle();
+    let call = |line: &str| handle.order(order(line), None).unwrap();
+    // Until the code of the component does not return.
+    while call("call A.echo text=a").wait(Duration::from_millis(20)).is_ok() {}
+    let (left, waiting, scheduled) = (call("call A.echo text=b"), call("call A.echo text=c"), call("stop B"));
+    assert_eq!(scheduled.wait(WAIT), Ok(json!(null)));
+    assert!(!scheduled.withdrawal().withdraw(), "it has taken effect");
+    let withdrawal = left.withdrawal();
+    assert!(withdrawal.withdraw() && !withdrawal.withdraw());
+    assert_eq!(left.wait(WAIT), Err(OrderError::NotYet));
+    handle.stop();
+    assert_eq!(waiting.wait(WAIT), Err(OrderError::Ending));
+    let report = fleet.run_to_end();
+    assert!(lines(&report).iter().all(|(_, line)| !line.contains("text=\"b") && !line.contains("text=\"c")));
 }

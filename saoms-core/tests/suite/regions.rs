@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use saoms_api::host::Registration;
-use saoms_api::{Class, Component, Context, Failure, Field, Message, Own, Publisher, Region, Subscription, Topic};
-use saoms_core::schedule::RunningFleet;
+use saoms_api::{
+    Class, Component, Context, Failure, Field, Message, Own, Publisher, Region, Subscription, Time, Topic,
+};
+use saoms_core::schedule::{ChangeOptions, RunningFleet};
 use saoms_lang::registry::Registry;
 
 use crate::fleet::{Diary, assembly_of, outcome, simulated, unindent};
@@ -58,6 +60,9 @@ struct Watcher {
     moves_at: u64,
     #[property(default = false)]
     restless: bool,
+    /// The middle of its region at first.
+    #[property(default = 3)]
+    column: i32,
     #[subscribes(SEEN)]
     seen: Subscription<Seen>,
     #[subscribes(MOVED)]
@@ -78,8 +83,8 @@ impl Component for Watcher {
     type Properties = Own<Self>;
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        context.set_region(&self.seen, Some(Region::around((3, 0), 1)))?;
-        context.set_region(&self.moved, Some(Region::around((3, 0), 1)))
+        context.set_region(&self.seen, Some(Region::around((self.column, 0), 1)))?;
+        context.set_region(&self.moved, Some(Region::around((self.column, 0), 1)))
     }
 
     fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -102,13 +107,47 @@ impl Component for Watcher {
 
 #[track_caller]
 fn check(fleet: &str, milliseconds: u64, expected: &str) {
+    check_change(fleet, None, milliseconds, expected);
+}
+
+/// The same with a fleet that becomes another one at a time, in milliseconds.
+#[track_caller]
+fn check_change(fleet: &str, change: Option<(u64, &str)>, milliseconds: u64, expected: &str) {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Mover>()).unwrap();
     registry.add(Registration::of::<Watcher>()).unwrap();
     let diary = Arc::new(Diary::default());
     let fleet = RunningFleet::start(assembly_of(fleet, &registry), simulated(milliseconds), vec![diary.clone()]);
-    let report = fleet.unwrap().run_to_end();
+    let fleet = fleet.unwrap();
+    if let Some((time, wanted)) = change {
+        fleet.run_until(Time::from_nanos(time * 1_000_000));
+        fleet.handle().apply(&assembly_of(wanted, &registry), ChangeOptions::allowing_loss()).unwrap();
+    }
+    let report = fleet.run_to_end();
     assert_eq!(format!("{}{}", diary.lines(), outcome(&report)), unindent(expected));
+}
+
+#[test]
+fn a_new_instance_has_the_region_that_it_sets() {
+    check_change(
+        "A mover period=10
+         W watcher period=10",
+        Some((
+            25,
+            "A mover period=10
+             W watcher period=10 column=5",
+        )),
+        70,
+        "[0.000 s] W: sees [], moved [], left []
+         [0.010 s] W: sees [], moved [], left []
+         [0.020 s] W: sees [\"1@2\"], moved [\"1@2\"], left []
+         [0.025 s] W: is replaced, and starts without the earlier state
+         [0.030 s] W: sees [], moved [], left []
+         [0.040 s] W: sees [\"1@4\"], moved [\"1@4\"], left []
+         [0.050 s] W: sees [\"1@5\"], moved [\"1@5\"], left []
+         [0.060 s] W: sees [\"1@6\"], moved [\"1@6\"], left []
+         Elapsed after 0.07 s",
+    );
 }
 
 #[test]

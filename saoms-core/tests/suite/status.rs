@@ -21,7 +21,7 @@ fn running(fleet: &str, settings: Settings, until: u64) -> RunningFleet {
 fn lines(components: &[ComponentStatus]) -> Vec<String> {
     let line = |one: &ComponentStatus| {
         let (name, state, executions) = (&one.report.name, one.state.name(), one.report.executions);
-        let (waits, values) = (one.waits_for.as_deref().unwrap_or("-"), json!(one.values));
+        let (waits, values) = (one.waits_for.as_deref().unwrap_or("-"), json!(*one.values));
         format!("{name} {state} {executions} {waits} {values}")
     };
     components.iter().map(line).collect()

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::host::Registration;
-use saoms_api::{Class, Component, Context, Failure, Own, Publisher};
-use saoms_core::schedule::{RunningFleet, Settings};
+use saoms_api::{Class, Component, Context, Failure, Own, Publisher, Time};
+use saoms_core::schedule::{ChangeOptions, RunningFleet, Settings};
 use saoms_core::store::Store;
 use saoms_lang::registry::Registry;
 
@@ -39,7 +39,10 @@ impl Component for Ledger {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.count = context.kept().get(&5).map_or(0, |bytes| u32::from_le_bytes(bytes.to_vec().try_into().unwrap()));
         let of = if context.kept_by_earlier_program() { ", of an earlier program" } else { "" };
-        context.info(format!("begins with {}{of}", self.count));
+        let count = |bytes: &[u8]| u32::from_le_bytes(bytes.to_vec().try_into().unwrap());
+        let left: Vec<u32> = context.kept_by_others().iter().map(|other| count(other.kept[&5])).collect();
+        let left = if left.is_empty() { String::new() } else { format!(", others kept {left:?}") };
+        context.info(format!("begins with {}{of}{left}", self.count));
         Ok(())
     }
 
@@ -105,6 +108,45 @@ fn messages_wait_in_their_order_for_what_was_kept_before_them() {
          [0.010 s] B: hears [2]
          Elapsed after 0.02 s",
     );
+}
+
+#[test]
+fn what_others_kept_is_left_to_those_of_their_class_that_begin_in_a_change() {
+    let (fleet, diary) = start(
+        "A ledger period=10
+         B ledger period=5
+         C ledger period=1
+         D ledger period=10 startup=false
+         X actor period=10",
+        simulated(60),
+        None,
+    );
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Actor>()).unwrap();
+    registry.add(Registration::of::<Ledger>()).unwrap();
+    fleet.run_until(Time::from_nanos(24_000_000));
+    let wanted = "A ledger period=20
+        C ledger period=1
+        D ledger period=20 startup=false
+        E ledger period=10
+        F ledger period=10 startup=false
+        X actor period=20";
+    let changed = fleet.handle().apply(&assembly_of(wanted, &registry), ChangeOptions::allowing_loss()).unwrap();
+    assert_eq!((changed.added.len(), changed.removed.len(), changed.replaced.len()), (2, 1, 3));
+    // Those that did not run have it when they begin.
+    fleet.handle().schedule("D").unwrap();
+    fleet.handle().schedule("F").unwrap();
+    fleet.run_to_end();
+    let lines = diary.lines();
+    let left = lines.lines().filter(|line| line.contains("others kept"));
+    let left: Vec<&str> = left.filter_map(|line| Some(line.split_once("] ")?.1)).collect();
+    let expected = [
+        "A: begins with 3, others kept [5]",
+        "E: begins with 0, others kept [5, 3]",
+        "D: begins with 0, others kept [5, 3]",
+        "F: begins with 0, others kept [5, 3]",
+    ];
+    assert_eq!(left, expected, "{lines}");
 }
 
 #[test]
@@ -179,7 +221,7 @@ fn what_a_removed_component_kept_is_removed() {
     std::thread::sleep(Duration::from_millis(20));
     let mut registry = Registry::new();
     registry.add(Registration::of::<Ledger>()).unwrap();
-    fleet.handle().apply(&assembly_of("A ledger period=1", &registry)).unwrap();
+    fleet.handle().apply(&assembly_of("A ledger period=1", &registry), ChangeOptions::default()).unwrap();
     fleet.handle().stop();
     fleet.run_to_end();
     let (fleet, diary) = start("A ledger period=1\nB ledger period=1", real(5_000), Some(folder.path()));

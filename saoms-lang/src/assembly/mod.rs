@@ -11,6 +11,7 @@ mod task;
 pub(crate) mod topic_list;
 pub(crate) mod topic_rename;
 mod traffic;
+mod web;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -29,6 +30,7 @@ pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_list::TopicList;
 pub use topic_rename::TopicRenames;
 pub use traffic::{Pace, TopicEnd, Traffic, TrafficTopic};
+pub use web::{CALL_DEADLINE, WebService, WebTarget};
 
 use crate::registry::{ClassTopic, RegisteredClass, RegisteredLoop};
 
@@ -71,6 +73,8 @@ pub struct ComponentSpec {
     pub references: Vec<Wire>,
     /// Its loops in their order; components share those that their class gives them.
     pub loops: Arc<[LoopSpec]>,
+    /// Its services that are offered over the web.
+    pub web: Box<[WebService]>,
 }
 
 impl ComponentSpec {
@@ -130,8 +134,17 @@ pub struct Wire {
     pub targets: Vec<WireTarget>,
     /// Those of them that are in other programs, which follow them; see [`Assembly::at`].
     pub elsewhere: Box<[RemoteTarget]>,
-    /// The time within which a call of these is answered, where the composite gives it.
+    /// The services of the web that it leads to, which follow those of other programs.
+    pub web: Box<[WebTarget]>,
+    /// The time within which a call of those in other programs or of the web is answered, where the composite gives it.
     pub deadline: Option<Duration>,
+}
+
+impl Wire {
+    /// The number of services that it leads to, wherever they are.
+    pub fn ends(&self) -> usize {
+        self.targets.len() + self.elsewhere.len() + self.web.len()
+    }
 }
 
 /// A service of a component of another program.

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use crate::source::Location;
 
 /// The names of properties that settings of networks come from.
-pub(crate) const OF_NETWORKS: [&str; 10] =
-    ["url", "IP", "port", "user", "password", "passwordFile", "users", "tlsCa", "tlsCertificate", "tlsKey"];
+pub(crate) const OF_NETWORKS: [&str; 11] = [
+    "url", "IP", "port", "transport", "user", "password", "passwordFile", "users", "tlsCa", "tlsCertificate", "tlsKey",
+];
 
 /// Where the settings of networks are written, for who finds that they cannot be used.
 #[derive(Clone, Debug, Default)]

@@ -16,6 +16,7 @@ use crate::check::fleet::class_index::ClassIndex;
 use crate::check::options::ENVIRONMENT;
 use crate::check::properties::given_values::ValuePlace;
 use crate::check::run_settings;
+use crate::check::web::Web;
 use crate::check::wiring::Wiring;
 use crate::source::{Location, Sources};
 
@@ -23,7 +24,7 @@ use crate::source::{Location, Sources};
 pub(crate) fn assemble(
     fleet: &Fleet<'_>,
     checks: Vec<ComponentCheck<'_>>,
-    wiring: &Wiring,
+    (wiring, mut web): (&Wiring, Web),
     sources: &Sources,
 ) -> Option<Assembly> {
     // Components that composites implement are in no assembly.
@@ -60,8 +61,8 @@ pub(crate) fn assemble(
         }
         let (values, written, places) = check.given.into_own();
         let written = without_secrets(class, &values, written, &places, sources);
-        let references = class.references.iter().zip(&wiring[place]);
-        let references = references.map(|(declared, targets)| Wire {
+        let references = class.references.iter().zip(&wiring[place]).enumerate();
+        let references = references.map(|(number, (declared, targets))| Wire {
             reference: declared.name.clone(),
             interface: declared.interface.name.clone(),
             targets: targets
@@ -74,6 +75,7 @@ pub(crate) fn assemble(
                 })
                 .collect(),
             elsewhere: Box::default(),
+            web: web.targets.remove(&(place, number)).unwrap_or_default().into(),
             deadline: member
                 .component
                 .reference(&declared.name)
@@ -91,6 +93,7 @@ pub(crate) fn assemble(
             task,
             references: references.collect(),
             loops: check.loops?.specs,
+            web: web.services.remove(&place).unwrap_or_default().into(),
         });
     }
     Some(Assembly {

@@ -25,6 +25,7 @@ mod tasks;
 mod unfolding;
 mod values;
 mod wanted_tables;
+mod web;
 mod wiring;
 
 use crate::assembly::Assembly;
@@ -92,12 +93,13 @@ pub fn check(
     // Where it is let pass that components share a value, that is no fault which others come of.
     let repeated = if severities.mentions(&codes::NOT_UNIQUE) { RepeatedValues::default() } else { repeated };
 
-    // Services, references, promotions and wires; what is said of the run; which node runs what.
+    // Services, references, promotions and wires, to the web, too; what is said of the run; which node runs what.
     contracts::check(&fleet, report);
     run_settings::check(&fleet, report);
-    let wiring = wiring::check(&fleet, options, report);
+    let (wiring, web_ends) = wiring::check(&fleet, options, report);
+    let web = web::check(&fleet, &web_ends, report);
 
-    placement::check(&fleet, (&checks, &wiring), options, report);
+    placement::check(&fleet, (&checks, &wiring, &web), options, report);
 
     // Constructors, and rules of crates of components: the expensive ones.
     rules::check(&fleet, (&checks, &wiring), &repeated, (registry, options), report);
@@ -114,7 +116,7 @@ pub fn check(
         return None;
     }
     let places = if options.wiring { rules::traffic::places(&fleet, &checks) } else { Vec::new() };
-    let assembly = assemble::assemble(&fleet, checks, &wiring, sources);
+    let assembly = assemble::assemble(&fleet, checks, (&wiring, web), sources);
     if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
         let known = report.diagnostics().len();
         rules::traffic::check(assembly, &places, report);

@@ -159,7 +159,14 @@ codes! {
     NODE_MISSING = "S2063" Error "node-missing": "Some components of a fleet are in a node, and others are in none: no program would run them.";
     UNKNOWN_NODE = "S2064" Error "unknown-node": "The node that is to run does not exist in the fleet.";
     WIRE_BETWEEN_NODES = "S2065" Error "wire-between-nodes" [OutlivesExpansion]: "A reference of a component leads to a component of another node, and cannot be called over.";
-    CALL_DEADLINE_UNUSED = "S2066" Warning "call-deadline-unused" [OutlivesExpansion, WithoutEffect]: "A deadline of calls has no effect: no call through the reference waits for another node.";
+    CALL_DEADLINE_UNUSED = "S2066" Warning "call-deadline-unused" [OutlivesExpansion, WithoutEffect]: "A deadline of calls has no effect: no call through the reference waits for another node or a web server, or the service is not offered over the web.";
+    WEB_ADDRESS = "S2067" Error "web-address": "The `uri` of a `binding.rest` is not a path for a service, or not an address of HTTP for a reference.";
+    WEB_PATH_REPEATED = "S2068" Error "web-path-repeated": "Two services are offered over the web at one path.";
+    WEB_SERVICE = "S2069" Error "web-service": "A service cannot be offered over the web.";
+    WEB_REFERENCE = "S2070" Error "web-reference" [OutlivesExpansion]: "A reference cannot lead to a web server.";
+    WEB_TOKEN = "S2071" Error "web-token": "The token for a web server has no server, has several, or is missing in the environment. What the environment lacks is reported by `saoms run`.";
+    WEB_UNSERVED = "S2072" Warning "web-unserved" [OutlivesExpansion]: "Services are offered over the web, but the run has no control server that serves them, or references lead to web servers, which no run in virtual time calls. Reported by `saoms run`.";
+    WEB_NOT_ALLOWED = "S2073" Error "web-not-allowed" [OutlivesExpansion]: "References lead to web servers, and the command line does not allow calls of them. Reported by `saoms run`.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has a kind of implementation that this program cannot run.";
@@ -208,6 +215,7 @@ codes! {
     NETWORK_FILE = "S4028" Error "network-file": "A file or an environment variable that a network needs is missing or wrong. Reported by `saoms run`.";
     UNPROTECTED_NETWORK = "S4029" Warning "unprotected-network" [OutlivesExpansion]: "Messages leave this machine without protection: everybody in the network can read and change them.";
     PEER_MISSING = "S4030" Error "peer-missing": "A `url` of peers does not name a node that has a component on this network.";
+    NO_TRANSPORT = "S4031" Error "no-transport": "There is no transport for a `url`: its scheme is unknown, or the library of the transport is missing. Reported by `saoms run`.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

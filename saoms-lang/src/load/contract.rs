@@ -7,7 +7,8 @@ use saoms_api::host::{meant_duration, parse_duration};
 use super::Loader;
 use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
-    BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind,
+    BINDING_REST, BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
+    INTERFACE_WSDL, Kind,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
@@ -24,7 +25,8 @@ impl Loader<'_> {
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
         let promote = if is_promoting { self.required(element, "promote") } else { None };
         let contract = self.contract(element, kind);
-        ServiceElement { origin: Origin::of(element), name, promote, contract }
+        let deadline = self.deadline(element).map(Box::new);
+        ServiceElement { origin: Origin::of(element), name, promote, deadline, contract }
     }
 
     pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> ReferenceElement {
@@ -56,11 +58,12 @@ impl Loader<'_> {
             wired_by_impl: self.boolean(element, "wiredByImpl"),
             non_overridable: self.boolean(element, "nonOverridable"),
             deadline: self.deadline(element).map(Box::new),
+            token_env: self.variable(element, "tokenEnv").map(Box::new),
             contract,
         }
     }
 
-    /// The time within which a call through a reference is answered.
+    /// The time within which a call through a reference, or of a service from the web, is answered.
     fn deadline(&mut self, element: Element<'_>) -> Option<Located<Duration>> {
         let text = self.own(element, "deadline")?;
         let why = match parse_duration(&text) {
@@ -114,6 +117,7 @@ impl Loader<'_> {
                 },
                 (Family::Own, "interface.rust") => loader.interface(child, family, kind, &mut contract),
                 _ if is_one(child, family, "interface.") => loader.interface(child, family, kind, &mut contract),
+                (Family::Own, "binding.rest") => contract.bindings.push(loader.binding(child, family)),
                 _ if is_one(child, family, "binding.") => contract.bindings.push(loader.binding(child, family)),
                 _ => return false,
             }
@@ -145,13 +149,16 @@ impl Loader<'_> {
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {
         // What other bindings hold is theirs.
-        if family == Family::Sca && meant_name(element) == BINDING_SCA.name {
-            self.parts_of(element, &BINDING_SCA);
+        match (family, meant_name(element)) {
+            (Family::Sca, "binding.sca") => self.parts_of(element, &BINDING_SCA),
+            (Family::Sca | Family::Own, "binding.rest") => self.parts_of(element, &BINDING_REST),
+            _ => {}
         }
         Binding {
             origin: Origin::of(element),
             kind: variant(element, "binding."),
             is_sca: family == Family::Sca,
+            is_own: family == Family::Own,
             name: self.optional(element, "name"),
             uri: self.optional(element, "uri"),
         }

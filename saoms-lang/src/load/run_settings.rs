@@ -3,7 +3,7 @@
 use super::Loader;
 use super::vocabulary::{COMPOSITE, own_names};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Hangup, HttpAddress, RunSettings, SAOMS_NAMESPACE};
+use crate::model::{AddressHelp, Hangup, HttpAddress, RunSettings, SAOMS_NAMESPACE};
 use crate::source::{Located, Text};
 use crate::syntax::{Element, escaped};
 
@@ -39,7 +39,7 @@ impl Loader<'_> {
 
     fn alert_url(&mut self, root: Element<'_>) -> Option<Located<HttpAddress>> {
         let text = self.own(root, "alertUrl")?;
-        match HttpAddress::parse(&text) {
+        match HttpAddress::parse(&text, &AddressHelp::ALERTS) {
             Ok(address) => Some(Located::new(address, text.location)),
             Err(fault) => {
                 let message = format!("{} {}", quoted(&text), fault.message);

@@ -16,6 +16,9 @@ pub struct ServiceElement {
     pub name: Text,
     /// `promote`, of a composite's service: `component` or `component/service`.
     pub promote: Option<Text>,
+    /// `deadline`, in the namespace of SAOMS: the time within which a call from the web is answered, in a box: most
+    /// have none.
+    pub deadline: Option<Box<Located<Duration>>>,
     /// Its interface, bindings and callback, in a box: most have none. [`Self::contract`] gives it.
     pub contract: Option<Box<Contract>>,
 }
@@ -42,6 +45,9 @@ pub struct ReferenceElement {
     /// `deadline`, in the namespace of SAOMS: the time within which a call of another program is answered, in a box:
     /// most have none.
     pub deadline: Option<Box<Located<Duration>>>,
+    /// `tokenEnv`, in the namespace of SAOMS: the environment variable with the token for a server of the web, in a
+    /// box: most have none.
+    pub token_env: Option<Box<Text>>,
     /// Its interface, bindings and callback, in a box: most have none. [`Self::contract`] gives it.
     pub contract: Option<Box<Contract>>,
 }
@@ -154,10 +160,20 @@ pub struct Binding {
     pub kind: SmolStr,
     /// True if its element is of an SCA namespace.
     pub is_sca: bool,
+    /// True if its element is of the namespace of SAOMS.
+    pub is_own: bool,
     /// `name`.
     pub name: Option<Text>,
     /// `uri`.
     pub uri: Option<Text>,
+}
+
+impl Binding {
+    /// True if it leads from or to the web: `binding.rest` of SCA or of SAOMS. Those of other runtimes mean what these
+    /// say, such as servers of their own.
+    pub fn is_rest(&self) -> bool {
+        self.kind == "rest" && (self.is_sca || self.is_own)
+    }
 }
 
 /// The callback of a service or a reference.

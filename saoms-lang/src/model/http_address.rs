@@ -30,6 +30,34 @@ pub struct AddressFault {
     pub meant: Option<String>,
 }
 
+/// What to do where an address cannot have what its author wants, by what the address is for.
+#[derive(Clone, Copy, Debug)]
+pub struct AddressHelp {
+    /// An address of HTTPS.
+    pub encrypted: &'static str,
+    /// An account in it.
+    pub account: &'static str,
+    /// Another scheme.
+    pub scheme: &'static str,
+}
+
+impl AddressHelp {
+    /// For addresses of alerts.
+    pub const ALERTS: AddressHelp = AddressHelp {
+        encrypted: "let a command send it, as `saoms:alertCommand=\"curl --fail --silent --show-error --max-time 5 \
+                    --json @- https://...\"`, or name a proxy on this machine that encrypts",
+        account: "write no secret into a composite: let `alertTokenEnv` name an environment variable with a token",
+        scheme: "write it as `http://host:port/path`, or let a command send it: `saoms:alertCommand`",
+    };
+    /// For addresses of services.
+    pub const SERVICES: AddressHelp = AddressHelp {
+        encrypted: "name a proxy on this machine that encrypts, such as `stunnel`, `nginx` or an `ssh -L` tunnel",
+        account: "write no secret into a composite: let `saoms:tokenEnv` of the reference name an environment variable \
+                  with a token",
+        scheme: "write it as `http://host:port/path`",
+    };
+}
+
 impl AddressFault {
     fn new(message: impl Into<String>, help: impl Into<String>) -> AddressFault {
         AddressFault { message: message.into(), help: help.into(), meant: None }
@@ -37,7 +65,7 @@ impl AddressFault {
 
     fn meant(self, meant: String) -> AddressFault {
         // What is suggested has to be right.
-        let is_right = HttpAddress::parse(&meant).is_ok();
+        let is_right = HttpAddress::parse(&meant, &AddressHelp::ALERTS).is_ok();
         AddressFault { meant: is_right.then_some(meant), ..self }
     }
 }
@@ -47,13 +75,13 @@ impl HttpAddress {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn parse(text: &str) -> Result<HttpAddress, AddressFault> {
-        let rest = rest_behind_scheme(text)?;
+    pub fn parse(text: &str, help: &AddressHelp) -> Result<HttpAddress, AddressFault> {
+        let rest = rest_behind_scheme(text, help)?;
         if let Some(wrong) = rest.chars().find(|letter| !letter.is_ascii_graphic() || r#""<>\^`{|}"#.contains(*letter))
         {
             let shown = wrong.escape_debug();
-            let help = "write it as the bytes of UTF-8, each as `%` and two hexadecimal digits";
-            return Err(AddressFault::new(format!("has the character `{shown}`, which no address has"), help));
+            let bytes = "write it as the bytes of UTF-8, each as `%` and two hexadecimal digits";
+            return Err(AddressFault::new(format!("has the character `{shown}`, which no address has"), bytes));
         }
         if let Some((before, _)) = rest.split_once('#') {
             let one = AddressFault::new("has a part after `#`, which is never sent", "leave that part out");
@@ -62,10 +90,7 @@ impl HttpAddress {
         let end = rest.find(['/', '?']).unwrap_or(rest.len());
         let (authority, target) = rest.split_at(end);
         if authority.contains('@') {
-            return Err(AddressFault::new(
-                "has an account before `@`",
-                "write no secret into a composite: let `alertTokenEnv` name an environment variable with a token",
-            ));
+            return Err(AddressFault::new("has an account before `@`", help.account));
         }
         let (host, port) = host_and_port(authority)?;
         let target = if target.starts_with('/') { target.to_owned() } else { format!("/{target}") };
@@ -88,22 +113,17 @@ impl fmt::Display for HttpAddress {
     }
 }
 
-fn rest_behind_scheme(text: &str) -> Result<&str, AddressFault> {
+fn rest_behind_scheme<'t>(text: &'t str, help: &AddressHelp) -> Result<&'t str, AddressFault> {
     let (start, rest) = text.split_at_checked(SCHEME.len()).unwrap_or_default();
     if start.eq_ignore_ascii_case(SCHEME) {
         return Ok(rest);
     }
     let scheme = text.split_once("://").map(|(scheme, _)| scheme);
     Err(match scheme {
-        Some(scheme) if scheme.eq_ignore_ascii_case("https") => AddressFault::new(
-            "is an address of HTTPS: SAOMS does not encrypt",
-            "let a command send it, as `saoms:alertCommand=\"curl --fail --silent --show-error --max-time 5 --json @- \
-             https://...\"`, or name a proxy on this machine that encrypts",
-        ),
-        Some(scheme) => AddressFault::new(
-            format!("has the scheme `{scheme}`, expected `http`"),
-            "write it as `http://host:port/path`, or let a command send it: `saoms:alertCommand`",
-        ),
+        Some(scheme) if scheme.eq_ignore_ascii_case("https") => {
+            AddressFault::new("is an address of HTTPS: SAOMS does not encrypt", help.encrypted)
+        }
+        Some(scheme) => AddressFault::new(format!("has the scheme `{scheme}`, expected `http`"), help.scheme),
         None => AddressFault::new("has no scheme", "write it as `http://host:port/path`")
             .meant(format!("{SCHEME}{}", text.trim_start_matches('/'))),
     })
@@ -154,7 +174,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> String {
-        match HttpAddress::parse(text) {
+        match HttpAddress::parse(text, &AddressHelp::ALERTS) {
             Ok(one) => format!("{}|{}|{}|{}", one.host, one.port, one.authority, one.target),
             Err(one) => one.message + &one.meant.map(|meant| format!(" -> {meant}")).unwrap_or_default(),
         }
@@ -171,7 +191,7 @@ mod tests {
         ] {
             assert_eq!(read(text), expected, "{text}");
         }
-        let shown = HttpAddress::parse("http://page.example/a?key=secret").unwrap().to_string();
+        let shown = HttpAddress::parse("http://page.example/a?key=secret", &AddressHelp::ALERTS).unwrap().to_string();
         assert_eq!(shown, "http://page.example/a", "what a query holds may be a secret");
     }
 

@@ -23,6 +23,7 @@ mod contribution;
 mod http_address;
 mod property;
 mod run_settings;
+mod web_path;
 
 pub use component::{
     ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Replicas, Row, Table,
@@ -32,9 +33,10 @@ pub use contract::{
     Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceElement, ServiceElement,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
-pub use http_address::{AddressFault, HttpAddress};
+pub use http_address::{AddressFault, AddressHelp, HttpAddress};
 pub use property::{ComponentProperty, Property, PropertyDetails, ValueDocument};
 pub use run_settings::{Hangup, RunSettings};
+pub use web_path::{RESERVED, WebPath};
 
 use crate::source::{FileId, Location};
 use crate::syntax::{Document, Element, ElementId};

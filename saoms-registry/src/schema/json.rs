@@ -2,10 +2,12 @@
 //! number that JSON does not have (`NaN`, `inf`, `-inf`) its name, something optional that is not there `null`.
 
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
+use saoms_api::rule::nearest;
 use serde_json::{Map, Number as JsonNumber, Value};
 
+use super::json_fault::{At, JsonFaults};
 use super::read::{Scalar, boolean, bound, constant, option, scalar};
-use super::{Number, Schema, SchemaError, Type};
+use super::{Number, Schema, Type};
 
 impl Schema {
     /// The message of these bytes as JSON.
@@ -22,11 +24,12 @@ impl Schema {
     /// The bytes of a message that is given as JSON. What is optional may be left out.
     ///
     /// # Errors
-    /// The value is no such message: a field is missing, unknown or of another type, or a number is out of its range.
-    pub fn encode(&self, value: &Value) -> Result<Vec<u8>, SchemaError> {
-        let mut writer = Writer::new();
-        write_message(self, value, &mut writer)?;
-        Ok(writer.into_bytes())
+    /// The value is no such message: fields are missing, unknown or of another type, or numbers are out of their range.
+    /// All faults are told, each with its place in the value.
+    pub fn encode(&self, value: &Value) -> Result<Vec<u8>, JsonFaults> {
+        let (mut writer, mut faults) = (Writer::new(), JsonFaults::default());
+        write_message(self, value, &At::Root, &mut Writing { writer: &mut writer, faults: &mut faults });
+        if faults.is_empty() { Ok(writer.into_bytes()) } else { Err(faults) }
     }
 }
 
@@ -66,97 +69,142 @@ fn read(kind: &Type, reader: &mut Reader<'_>) -> Result<Value, DecodeError> {
     })
 }
 
-fn write_message(schema: &Schema, value: &Value, writer: &mut Writer) -> Result<(), SchemaError> {
-    let Some(object) = value.as_object() else { return Err(wrong(value, "an object")) };
-    if let Some(unknown) = object.keys().find(|name| !schema.fields.iter().any(|field| field.name == **name)) {
-        let names: Vec<&str> = schema.fields.iter().map(|field| field.name.as_str()).collect();
-        return Err(SchemaError(format!(
-            "`{}` has no field `{unknown}`; its fields are: {}",
-            schema.name,
-            names.join(", ")
-        )));
+/// Bytes that are written, and what is wrong with the value that they come from: with a fault, nobody gets the bytes.
+struct Writing<'w> {
+    writer: &'w mut Writer,
+    faults: &'w mut JsonFaults,
+}
+
+impl Writing<'_> {
+    /// Writes what a value comes to, or tells what was expected.
+    fn scalar<const N: usize>(&mut self, value: &Value, at: &At<'_>, found: Option<[u8; N]>, expected: &str) {
+        match found {
+            Some(bytes) => self.writer.scalar(bytes),
+            None => self.faults.wrong(at, value, expected),
+        }
+    }
+}
+
+fn write_message(schema: &Schema, value: &Value, at: &At<'_>, to: &mut Writing<'_>) {
+    let Some(object) = value.as_object() else { return to.faults.wrong(at, value, "an object") };
+    let mut meant: Vec<&str> = Vec::new();
+    for unknown in object.keys().filter(|name| !schema.fields.iter().any(|field| field.name == **name)) {
+        let names = || schema.fields.iter().map(|field| field.name.as_str());
+        let absent = || names().filter(|name| !object.contains_key(*name) && !meant.contains(name));
+        let known = match nearest(unknown, absent()) {
+            Some(near) => {
+                meant.push(near);
+                format!("did you mean `{near}`?")
+            }
+            None if schema.fields.is_empty() => "it has none".to_owned(),
+            None => format!("its fields are: {}", names().collect::<Vec<_>>().join(", ")),
+        };
+        to.faults.add(&At::Field(at, unknown), format!("`{}` has no field `{unknown}`; {known}", schema.name));
     }
     if schema.fields.is_empty() {
-        writer.scalar([0]);
+        to.writer.scalar([0]);
     }
-    schema.fields.iter().try_for_each(|field| {
+    for field in &schema.fields {
+        let here = At::Field(at, &field.name);
         let absent = matches!(field.kind, Type::Optional(_)).then_some(&Value::Null);
-        let value = object
-            .get(&field.name)
-            .or(absent)
-            .ok_or_else(|| SchemaError(format!("field `{}` of `{}` is missing", field.name, schema.name)))?;
-        write(&field.kind, value, writer)
-            .map_err(|SchemaError(error)| SchemaError(format!("field `{}`: {error}", field.name)))
-    })
-}
-
-fn wrong(value: &Value, expected: &str) -> SchemaError {
-    SchemaError(format!("found {value}, expected {expected}"))
-}
-
-fn write(kind: &Type, value: &Value, writer: &mut Writer) -> Result<(), SchemaError> {
-    match kind {
-        Type::Bool => {
-            writer.scalar([u8::from(value.as_bool().ok_or_else(|| wrong(value, "true or false"))?)]);
+        match object.get(&field.name).or(absent) {
+            Some(value) => write(&field.kind, value, &here, to),
+            // That is one mistake.
+            None if meant.contains(&field.name.as_str()) => {}
+            None => to.faults.add(&here, format!("field `{}` of `{}` is missing", field.name, schema.name)),
         }
+    }
+}
+
+fn write_all(element: &Type, list: &[Value], at: &At<'_>, to: &mut Writing<'_>) {
+    for (place, value) in list.iter().enumerate() {
+        write(element, value, &At::Element(at, place), to);
+    }
+}
+
+fn write(kind: &Type, value: &Value, at: &At<'_>, to: &mut Writing<'_>) {
+    match kind {
+        Type::Bool => to.scalar(value, at, value.as_bool().map(|found| [u8::from(found)]), "true or false"),
         Type::Number(number) if number.is_float() => {
-            let named = || value.as_str()?.parse::<f64>().ok();
-            let found = value.as_f64().or_else(named).ok_or_else(|| wrong(value, "a number"))?;
+            let found = value.as_f64().or_else(|| named(value.as_str()?));
             match number {
-                Number::Float32 => writer.scalar((found as f32).to_le_bytes()),
-                _ => writer.scalar(found.to_le_bytes()),
+                Number::Float32 => {
+                    let fits = |found: &f64| !found.is_finite() || (*found as f32).is_finite();
+                    let found = found.filter(fits).map(|found| (found as f32).to_le_bytes());
+                    to.scalar(value, at, found, "a number of 32 bits");
+                }
+                _ => to.scalar(value, at, found.map(f64::to_le_bytes), "a number"),
             }
         }
         Type::Number(number) => {
-            let found = value.as_i64().map(i128::from).or_else(|| value.as_u64().map(i128::from));
+            let found = whole(value);
             let (least, greatest) = number.bounds();
-            let expected = || wrong(value, &format!("a whole number from {least} to {greatest}"));
-            write_integer(
-                *number,
-                found.filter(|found| (least..=greatest).contains(found)).ok_or_else(expected)?,
-                writer,
-            );
+            match found.filter(|found| (least..=greatest).contains(found)) {
+                Some(found) => write_integer(*number, found, to.writer),
+                None => to.faults.wrong(at, value, &format!("a whole number from {least} to {greatest}")),
+            }
         }
-        Type::Time => write(&Type::Number(Number::Uint64), value, writer)?,
-        Type::String => writer.string(value.as_str().ok_or_else(|| wrong(value, "a text"))?),
+        Type::Time => write(&Type::Number(Number::Uint64), value, at, to),
+        Type::String => match value.as_str() {
+            Some(text) => to.writer.string(text),
+            None => to.faults.wrong(at, value, "a text"),
+        },
         Type::Enumeration(number, values) => {
             let found = value.as_str().and_then(|name| values.iter().find(|(known, _)| known == name));
-            let (_, constant) = found.ok_or_else(|| {
-                let names: Vec<&str> = values.iter().map(|(name, _)| name.as_str()).collect();
-                wrong(value, &format!("one of {}", names.join(", ")))
-            })?;
-            write_integer(*number, *constant, writer);
+            if let Some((_, constant)) = found {
+                return write_integer(*number, *constant, to.writer);
+            }
+            let names = || values.iter().map(|(name, _)| name.as_str());
+            let meant = value.as_str().and_then(|name| nearest(name, names()));
+            let meant = meant.map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default();
+            to.faults.wrong(at, value, &format!("one of {}{meant}", names().collect::<Vec<_>>().join(", ")));
         }
-        Type::Message(schema) => write_message(schema, value, writer)?,
-        Type::Sequence(element) => {
-            let list = value.as_array().ok_or_else(|| wrong(value, "a list"))?;
-            writer.length(list.len());
-            list.iter().try_for_each(|value| write(element, value, writer))?;
-        }
-        Type::Array(element, count) => {
-            let list = value.as_array().filter(|list| list.len() == *count);
-            let list = list.ok_or_else(|| wrong(value, &format!("a list of {count}")))?;
-            list.iter().try_for_each(|value| write(element, value, writer))?;
-        }
+        Type::Message(schema) => write_message(schema, value, at, to),
+        Type::Sequence(element) => match value.as_array() {
+            Some(list) => {
+                to.writer.length(list.len());
+                write_all(element, list, at, to);
+            }
+            None => to.faults.wrong(at, value, "a list"),
+        },
+        Type::Array(element, count) => match value.as_array().filter(|list| list.len() == *count) {
+            Some(list) => write_all(element, list, at, to),
+            None => to.faults.wrong(at, value, &format!("a list of {count}")),
+        },
         Type::Bounded(content, most) => {
             let length = value.as_array().map(Vec::len).or_else(|| value.as_str().map(str::len));
             match (length, &**content) {
                 (Some(length), Type::Sequence(_)) if length > *most => {
-                    return Err(wrong(value, &format!("a list of at most {most}")));
+                    to.faults.wrong(at, value, &format!("a list of at most {most}"));
                 }
                 (Some(length), Type::String) if length > *most => {
-                    return Err(wrong(value, &format!("a text of at most {most} bytes")));
+                    to.faults.wrong(at, value, &format!("a text of at most {most} bytes"));
                 }
-                _ => write(content, value, writer)?,
+                _ => write(content, value, at, to),
             }
         }
-        Type::Optional(_) if value.is_null() => writer.length(0),
+        Type::Optional(_) if value.is_null() => to.writer.length(0),
         Type::Optional(element) => {
-            writer.length(1);
-            write(element, value, writer)?;
+            to.writer.length(1);
+            write(element, value, at, to);
         }
     }
-    Ok(())
+}
+
+/// A number that JSON does not have.
+fn named(name: &str) -> Option<f64> {
+    match name {
+        "NaN" => Some(f64::NAN),
+        "inf" => Some(f64::INFINITY),
+        "-inf" => Some(f64::NEG_INFINITY),
+        _ => None,
+    }
+}
+
+/// A whole number, however it is written: to JSON, `1.0` is one.
+fn whole(value: &Value) -> Option<i128> {
+    let exact = value.as_i64().map(i128::from).or_else(|| value.as_u64().map(i128::from));
+    exact.or_else(|| value.as_f64().filter(|number| number.fract() == 0.0).map(|number| number as i128))
 }
 
 /// Writes an integer within the bounds of its type: the lower bytes of any wider one are its own.

@@ -4,6 +4,8 @@
 //! whether bytes are such a message ([`Schema::check`]), and turns them into JSON and back, for tools and people.
 
 mod json;
+mod json_fault;
+mod json_schema;
 mod read;
 mod sample;
 #[cfg(test)]
@@ -15,6 +17,8 @@ use std::fmt;
 use saoms_api::host::cdr::{DecodeError, Reader};
 use serde::Deserialize;
 use serde_json::Value;
+
+pub use json_fault::{JsonFault, JsonFaults};
 
 /// A message type.
 ///

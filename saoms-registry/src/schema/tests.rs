@@ -95,9 +95,33 @@ fn wrong_json_is_told() {
     let error = |value| block.encode(&value).unwrap_err().to_string();
     assert_eq!(error(json!({"x": 200})), "field `x`: found 200, expected a whole number from -128 to 127");
     assert_eq!(error(json!({"x": "1"})), "field `x`: found \"1\", expected a whole number from -128 to 127");
-    assert_eq!(error(json!({"y": 1})), "`Block` has no field `y`; its fields are: x");
+    assert_eq!(error(json!({"y": 1})), "`Block` has no field `y`; its fields are: x; field `x` of `Block` is missing");
+    assert_eq!(error(json!({"height": 1, "x": 1})), "`Block` has no field `height`; its fields are: x");
     assert_eq!(error(json!({})), "field `x` of `Block` is missing");
     assert_eq!(error(json!(1)), "found 1, expected an object");
+}
+
+#[test]
+fn numbers_are_taken_as_their_json_schema_says() {
+    let numbers = r#"{"name":"A","fields":[{"name":"whole","type":"int8"},{"name":"half","type":"float32"}]}"#;
+    let numbers = Schema::parse(numbers).unwrap();
+    let read = |whole, half| {
+        let bytes = numbers.encode(&json!({"whole": whole, "half": half})).map_err(|faults| faults.to_string())?;
+        Ok::<_, String>(numbers.decode(&bytes).unwrap())
+    };
+    assert_eq!(read(json!(-7.0), json!(1)).unwrap(), json!({"whole": -7, "half": 1.0}));
+    for name in ["NaN", "inf", "-inf"] {
+        assert_eq!(read(json!(1e2), json!(name)).unwrap(), json!({"whole": 100, "half": name}));
+    }
+    for (whole, half, expected) in [
+        (json!(1.5), json!(1), "field `whole`: found 1.5, expected a whole number from -128 to 127"),
+        (json!(1e300), json!(1), "field `whole`: found 1e+300, expected a whole number from -128 to 127"),
+        (json!(1), json!("1.5"), "field `half`: found \"1.5\", expected a number of 32 bits"),
+        (json!(1), json!("infinity"), "field `half`: found \"infinity\", expected a number of 32 bits"),
+        (json!(1), json!("nan"), "field `half`: found \"nan\", expected a number of 32 bits"),
+    ] {
+        assert_eq!(read(whole, half).unwrap_err(), expected);
+    }
 }
 
 #[test]
@@ -164,4 +188,115 @@ fn the_key_of_a_message_is_read_from_its_bytes() {
     assert_eq!(key(All::SCHEMA, &cdr::encode(&All::default())), None);
     let error = Schema::parse(&own(r#""float32""#)).unwrap_err().to_string();
     assert_eq!(error, "the key of `Own` is `key`, which is not an integer");
+}
+
+#[test]
+fn all_faults_of_a_value_are_told_with_their_places() {
+    let wrong = json!({
+        "small": 256, "flag": 1, "txet": "a", "kind": "TAKEOF", "block": {"x": "1", "y": 2, "z": 3},
+        "blocks": [{"x": 1, "y": 2}, {"x": 1}], "numbers": [1, "many"], "large": -1, "half": 1e300,
+        "matrix": [1, 2, 3], "corners": [{"x": 1, "y": 2}, 7], "few": [], "short": "", "a/b": 1,
+    });
+    let faults = schema().encode(&wrong).unwrap_err();
+    let told: Vec<(&str, String)> = faults.iter().map(|one| (one.pointer.as_str(), one.to_string())).collect();
+    let integer = "expected a whole number from";
+    let expected = [
+        (
+            "/a~1b",
+            "`All` has no field `a/b`; its fields are: small, flag, text, kind, block, blocks, numbers, large, \
+          half, matrix, corners, few, short, maybe"
+                .to_owned(),
+        ),
+        ("/txet", "`All` has no field `txet`; did you mean `text`?".to_owned()),
+        ("/small", format!("field `small`: found 256, {integer} 0 to 255")),
+        ("/flag", "field `flag`: found 1, expected true or false".to_owned()),
+        (
+            "/kind",
+            "field `kind`: found \"TAKEOF\", expected one of LANDING, TAKEOFF; did you mean `TAKEOFF`?".to_owned(),
+        ),
+        ("/block/z", "`Block` has no field `z`; its fields are: x, y".to_owned()),
+        ("/block/x", format!("field `block.x`: found \"1\", {integer} -2147483648 to 2147483647")),
+        ("/blocks/1/y", "field `y` of `Block` is missing".to_owned()),
+        ("/numbers/1", "field `numbers[1]`: found \"many\", expected a number".to_owned()),
+        ("/large", format!("field `large`: found -1, {integer} 0 to 18446744073709551615")),
+        ("/half", "field `half`: found 1e+300, expected a number of 32 bits".to_owned()),
+        ("/corners/1", "field `corners[1]`: found 7, expected an object".to_owned()),
+    ];
+    assert_eq!(told, expected);
+}
+
+#[test]
+fn a_value_with_very_many_faults_is_told_in_part() {
+    let wrong = json!({"numbers": vec!["x".repeat(1_000); 100]});
+    let text = schema().encode(&wrong).unwrap_err().to_string();
+    assert!(text.ends_with("; and 92 more") && text.len() < 5_000, "{text}");
+}
+
+/// The values that a JSON Schema allows, as far as schemas of messages use it.
+fn fits(schema: &serde_json::Value, value: &serde_json::Value) -> bool {
+    let all = |key: &str| schema[key].as_array().cloned().unwrap_or_default();
+    if schema.get("oneOf").is_some() {
+        return all("oneOf").iter().filter(|one| fits(one, value)).count() == 1;
+    }
+    if schema.get("anyOf").is_some() {
+        return all("anyOf").iter().any(|one| fits(one, value));
+    }
+    if schema.get("enum").is_some() && !all("enum").contains(value) {
+        return false;
+    }
+    let number = |key: &str| schema.get(key).and_then(serde_json::Value::as_u64).map(|number| number as usize);
+    let least = |length: usize| number("minItems").is_none_or(|least| length >= least);
+    match schema["type"].as_str() {
+        Some("null") => value.is_null(),
+        Some("boolean") => value.is_boolean(),
+        Some("integer") => {
+            let integer = |one: &serde_json::Value| one.as_i64().map(i128::from).or(one.as_u64().map(i128::from));
+            // 2020-12: any number without a fraction.
+            let written =
+                |one: &serde_json::Value| one.as_f64().filter(|one| one.fract() == 0.0).map(|one| one as i128);
+            let found = integer(value).or_else(|| written(value));
+            found.is_some_and(|found| {
+                integer(&schema["minimum"]).is_some_and(|least| found >= least)
+                    && integer(&schema["maximum"]).is_some_and(|most| found <= most)
+            })
+        }
+        Some("number") => value.is_number(),
+        Some("string") => {
+            value.as_str().is_some_and(|text| number("maxLength").is_none_or(|most| text.chars().count() <= most))
+        }
+        Some("array") => value.as_array().is_some_and(|list| {
+            least(list.len())
+                && number("maxItems").is_none_or(|most| list.len() <= most)
+                && list.iter().all(|one| fits(&schema["items"], one))
+        }),
+        Some("object") => value.as_object().is_some_and(|fields| {
+            all("required").iter().all(|name| name.as_str().is_some_and(|name| fields.contains_key(name)))
+                && fields.iter().all(|(name, one)| fits(&schema["properties"][name], one))
+        }),
+        _ => false,
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_json_schema_of_a_message_allows_its_messages(seed: u64) {
+        let schema = schema();
+        let value = schema.decode(&schema.sample(&mut saoms_api::Chance::new(seed))).unwrap();
+        prop_assert!(fits(&schema.json_schema(), &value), "{value}");
+        prop_assert!(schema.encode(&value).is_ok());
+    }
+
+    #[test]
+    fn what_the_json_schema_refuses_is_refused(seed: u64, field in 0..14usize, wrong in 0..13usize) {
+        let schema = schema();
+        let mut value = schema.decode(&schema.sample(&mut saoms_api::Chance::new(seed))).unwrap();
+        let names: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
+        let wrong = [
+            json!({"other": 1}), json!("wrong"), json!([[1], "a"]), json!(1e30), json!(true), json!("1.5"), json!("inf"),
+            json!("Infinity"), json!("nan"), json!(1.0), json!(-0.0), json!(0.5), json!(["-inf", "1"]),
+        ][wrong].clone();
+        value[&names[field]] = wrong;
+        let is_refused = !fits(&schema.json_schema(), &value);
+        prop_assert_eq!(schema.encode(&value).is_err(), is_refused, "{}", value);
+    }
 }

@@ -1,6 +1,7 @@
 //! Diagnostics for people, with a picture of the place in the look of rustc.
 
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
@@ -29,13 +30,21 @@ pub struct Human<'d> {
     shown: Vec<(&'d Diagnostic, Option<String>)>,
     sources: &'d Sources,
     renderer: Renderer,
+    /// The folder from which paths go.
+    folder: PathBuf,
 }
 
 impl<'d> Human<'d> {
     /// These diagnostics, in colours if asked.
     pub fn of(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, sources: &'d Sources, colour: bool) -> Self {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
-        Self { shown: grouped(diagnostics.into_iter().collect(), sources), sources, renderer }
+        Self { shown: grouped(diagnostics.into_iter().collect(), sources), sources, renderer, folder: PathBuf::new() }
+    }
+
+    /// The same for a reader in this folder: the paths of files in it go from there.
+    #[must_use]
+    pub fn seen_from(self, folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), ..self }
     }
 }
 
@@ -45,7 +54,7 @@ impl fmt::Display for Human<'_> {
             if place > 0 {
                 out.write_str("\n")?;
             }
-            let rendered = render(one, others.as_deref(), self.sources, &self.renderer);
+            let rendered = render(one, others.as_deref(), (self.sources, &self.folder), &self.renderer);
             // Where a part of a line is shown, its place is written before it, and the picture has a place without a
             // name besides.
             let lines = rendered.lines().filter(|line| !is_nameless_place(line));
@@ -54,6 +63,12 @@ impl fmt::Display for Human<'_> {
         }
         Ok(())
     }
+}
+
+/// A path as it is called in a folder: that of a file elsewhere stays.
+pub fn from_folder<'p>(path: &'p str, folder: &Path) -> &'p str {
+    let inside = folder.to_str().filter(|folder| !folder.is_empty()).and_then(|folder| path.strip_prefix(folder));
+    inside.and_then(|rest| rest.strip_prefix('/')).unwrap_or(path)
 }
 
 /// True if a line has nothing but `:::` in it, which stands before the path of a file.
@@ -67,7 +82,7 @@ fn is_nameless_place(line: &str) -> bool {
     (plain + rest).trim() == ":::"
 }
 
-fn render(one: &Diagnostic, others: Option<&str>, sources: &Sources, renderer: &Renderer) -> String {
+fn render(one: &Diagnostic, others: Option<&str>, (sources, folder): (&Sources, &Path), renderer: &Renderer) -> String {
     let level = match one.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
@@ -77,7 +92,7 @@ fn render(one: &Diagnostic, others: Option<&str>, sources: &Sources, renderer: &
     let mut group = Group::with_title(level.primary_title(one_line(&one.message)).id(id));
     let windows = pictures(one, sources);
     for (file, window) in &windows {
-        group = picture(group, *file, window, sources);
+        group = picture(group, *file, window, (sources, folder));
     }
     for suggestion in &one.suggestions {
         group = group.element(Level::HELP.message(one_line(&suggestion.description)));
@@ -106,8 +121,13 @@ fn pictures<'a>(one: &'a Diagnostic, sources: &Sources) -> Vec<(FileId, Window<'
     files.into_iter().flat_map(shown).collect()
 }
 
-fn picture<'a>(group: Group<'a>, file: FileId, window: &'a Window<'a>, sources: &'a Sources) -> Group<'a> {
-    let path = one_line(sources.get(file).path());
+fn picture<'a>(
+    group: Group<'a>,
+    file: FileId,
+    window: &'a Window<'a>,
+    (sources, folder): (&'a Sources, &Path),
+) -> Group<'a> {
+    let path = one_line(from_folder(sources.get(file).path(), folder));
     if sources.get(file).text().is_empty() {
         return group.element(Origin::path(path));
     }

@@ -8,6 +8,6 @@ mod sarif;
 mod tests;
 mod window;
 
-pub use human::{Human, human, human_of};
+pub use human::{Human, from_folder, human, human_of};
 pub use json::json;
 pub use sarif::{Sarif, sarif};

@@ -61,10 +61,14 @@ pub(crate) fn release(arguments: &ReleaseArguments) -> Exit {
     give(&arguments.fleet, "release", &arguments.components, "released")
 }
 
-/// The query that says who it is; whoever can order something may also name somebody else.
+/// Who gives the command; whoever can order something may also name somebody else.
+pub(super) fn user() -> Option<String> {
+    std::env::var("USER").or_else(|_| std::env::var("LOGNAME")).ok().filter(|user| !user.is_empty())
+}
+
+/// The query that says who it is.
 pub(super) fn by() -> String {
-    let by = std::env::var("USER").or_else(|_| std::env::var("LOGNAME")).unwrap_or_default();
-    if by.is_empty() { String::new() } else { format!("?by={}", escape(&by)) }
+    user().map(|user| format!("?by={}", escape(&user))).unwrap_or_default()
 }
 
 /// Stops components in all programs of a network.

@@ -1,6 +1,7 @@
 //! The running fleet that a command is for.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
 use saoms_api::host::one_line;
@@ -72,6 +73,18 @@ impl RunningFleetArguments {
     pub(crate) fn request(&self, method: &str, path: &str, body: &str) -> Result<Response, Exit> {
         let client = self.client()?;
         client.request(method, path, body).map_err(|error| self.refused(&error))
+    }
+
+    /// The same for an answer that takes longer.
+    pub(crate) fn request_within(
+        &self,
+        patience: Duration,
+        method: &str,
+        path: &str,
+        body: &str,
+    ) -> Result<Response, Exit> {
+        let client = self.client()?;
+        client.request_within(patience, method, path, body).map_err(|error| self.refused(&error))
     }
 
     /// The answer to a request as JSON.

@@ -1,6 +1,7 @@
 //! Commands that reach a running fleet: each is a client of the server in the program that runs it.
 
 mod alerts;
+mod change;
 mod emergency;
 mod fleet;
 mod journal;
@@ -15,6 +16,7 @@ mod top;
 mod topic;
 
 pub(super) use alerts::{AlertsArguments, alerts};
+pub(super) use change::{ApplyArguments, PlanArguments, apply, plan};
 pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
 pub(super) use fleet::{RunningFleetArguments, escape};
 pub(super) use journal::{JournalArguments, journal};

@@ -9,7 +9,7 @@ use saoms_core::schedule::Speed;
 use super::control::NetworkArguments;
 use super::history::HistoryArguments;
 use super::log_lines::LogArguments;
-use crate::arguments::{FleetArguments, Format, duration};
+use crate::arguments::{FleetArguments, Format, duration, parse_size};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -47,6 +47,16 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "DURATION", conflicts_with = "virtual_time", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) connect_timeout: Option<Duration>,
 
+    /// When the run ends, wait so long for programs of its networks that are away and have not received all events.
+    /// Those that they lack then are lost, and the run has failed; `0s` waits for nobody who is away
+    #[arg(long, value_name = "DURATION", default_value = "60s", conflicts_with = "virtual_time", allow_hyphen_values = true, value_parser = duration)]
+    pub(crate) linger: Duration,
+
+    /// Memory for events that programs of its networks have not received yet: what is beyond it is lost, and the run
+    /// has failed
+    #[arg(long, value_name = "SIZE", default_value = "256MB", conflicts_with = "virtual_time", value_parser = parse_size)]
+    pub(crate) backlog: u64,
+
     /// Run in virtual time: deterministic, and as fast as the machine allows
     #[arg(long = "virtual", conflicts_with_all = ["realtime", "timer_slack", "budget"])]
     pub(crate) virtual_time: bool,
@@ -55,11 +65,12 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
 
-    /// Write the report as JSON to this file, `-` for standard output
+    /// Write the report as JSON to this file, `-` for standard output; `saoms view FILE` shows the run
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Leave the records of the journal out of the report: they take megabytes after a long run. Their counts stay
+    /// Leave the records of the journal and the recording for `saoms view` out of the report: they take megabytes
+    /// after a long run. The counts of the records stay
     #[arg(long, requires = "report")]
     pub(crate) short_report: bool,
 
@@ -125,6 +136,11 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub(crate) alerts: bool,
 
+    /// Call the web servers to which references of the composite lead (`binding.rest`), with the tokens in the
+    /// environment variables that it names: without this, a composite sends nothing
+    #[arg(long)]
+    pub(crate) allow_web: bool,
+
     #[command(flatten)]
     pub(crate) log: LogArguments,
 
@@ -134,6 +150,11 @@ pub(crate) struct RunArguments {
     /// Watch the libraries of plugins: when a library is rebuilt, its components are replaced while the fleet runs
     #[arg(long, conflicts_with = "virtual_time")]
     pub(crate) reload: bool,
+
+    /// Watch the files of the composites: when they change, the fleet becomes what they describe, as `saoms apply` does
+    /// it. Files with errors, and changes that would lose a state, change nothing
+    #[arg(long, conflicts_with = "virtual_time")]
+    pub(crate) watch: bool,
 
     /// Show only errors
     #[arg(long, conflicts_with = "console")]

@@ -88,6 +88,7 @@ impl Observer for Console {
         Interest {
             log: Some(log),
             console: self.verbosity == Verbosity::Classic,
+            samples: None,
             progress: self.status.as_ref().map(|_| Duration::from_millis(100)),
             journal: false,
         }

@@ -9,19 +9,20 @@ use clap::Args;
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{
-    AlertList, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, LossCounts, NetworkError,
-    NetworkListener, Places, SentLine, TokenFile, Tokens, TopicWatch, default_socket, token_beside, view_token_beside,
+    AlertList, ControlServer, ControlledFleet, FigureWatch, FleetDescription, Listener, LogTail, LossCounts,
+    NetworkError, NetworkListener, Places, SentLine, TokenFile, Tokens, TopicWatch, default_socket, token_beside,
+    view_token_beside,
 };
 use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
 
 use super::RunArguments;
+use super::changes::FleetChanges;
 use super::ending::Signalled;
 use super::events::{Languages, Numbers, Sent};
 use super::history;
 use super::picture;
 use crate::Exit;
-use crate::arguments::FleetArguments;
 use crate::output::{displayed, eprint};
 
 /// The value of `--control` for a fleet that nobody can reach.
@@ -59,19 +60,22 @@ pub(super) struct Control {
     log: Arc<LogTail>,
     /// The topics of the fleet, an observer of it.
     topics: Arc<TopicWatch>,
+    /// Its figures, an observer of it.
+    figures: Arc<FigureWatch>,
 }
 
 impl Control {
     /// Listens where the command line says, or where the commands look. In virtual time nobody listens unless that is
     /// asked for. Why a place that was named cannot be used is reported; one that was not named is done without.
-    pub(super) fn of(arguments: &RunArguments, notes: &mut Vec<String>) -> Result<Option<Control>, Exit> {
+    pub(super) fn of(
+        arguments: &RunArguments,
+        figures: &Arc<FigureWatch>,
+        notes: &mut Vec<String>,
+    ) -> Result<Option<Control>, Exit> {
         let mut description = description(arguments);
         let usual = default_socket(&description.name, description.pid);
         let socket = match arguments.control.as_deref() {
-            Some(NONE) => None,
-            None if arguments.virtual_time && !(arguments.stay || arguments.paused || arguments.speed.is_some()) => {
-                None
-            }
+            _ if !has_socket(arguments) => None,
             Some(path) => {
                 let told = |error| unusable(&format!("--control {}", displayed(Path::new(path))), &error, "");
                 Some(Listener::bind(Path::new(path)).map_err(told)?)
@@ -90,7 +94,13 @@ impl Control {
         description.view_token_file = network.as_ref().map(|network| file(&network.tokens().view));
         let places = Places { socket, network };
         let is_reached = places.socket.is_some() || places.network.is_some();
-        Ok(is_reached.then(|| Control { places, description, log: Arc::default(), topics: Arc::default() }))
+        let (log, topics, figures) = (Arc::default(), Arc::default(), Arc::clone(figures));
+        Ok(is_reached.then_some(Control { places, description, log, topics, figures }))
+    }
+
+    /// Its address on the network.
+    pub(super) fn url(&self) -> Option<&str> {
+        self.description.url.as_deref()
     }
 
     /// The observers of the fleet with which it serves.
@@ -106,10 +116,9 @@ impl Control {
         numbers: &Numbers,
         losses: LossCounts,
         alerts: &Arc<AlertList>,
-        files: FleetArguments,
+        changes: &Arc<FleetChanges>,
     ) -> Option<ControlServer> {
-        let Control { places, description, log, topics } = self;
-        let started = SystemTime::now();
+        let Control { places, description, log, topics, figures } = self;
         let place =
             description.url.clone().zip(description.token_file.clone()).zip(description.view_token_file.clone());
         let languages = Mutex::new(Languages::of(("(operators)", "a line of an operator"), numbers));
@@ -128,7 +137,10 @@ impl Control {
             ControlledFleet::new(description, handle.clone(), (log, topics, Arc::clone(alerts)), send, move || {
                 ending.down(&fleet)
             });
-        let fleet = fleet.with_losses(losses).with_picture(move || picture::drawn(&files, started));
+        let (drawn, changed) = (Arc::clone(changes), Arc::clone(changes));
+        let fleet =
+            fleet.with_figures(figures).with_losses(losses).with_picture(move || picture::drawn(&drawn.present()));
+        let fleet = fleet.with_changes(move |request, withdrawal| changed.answer(&request, withdrawal));
         match ControlServer::start(places, fleet) {
             Ok(server) => {
                 if let Some(((url, file), view)) = place {
@@ -144,6 +156,19 @@ impl Control {
             }
         }
     }
+}
+
+/// True if the command line wants a socket: in virtual time, a run that is over soon has none unless it is named.
+fn has_socket(arguments: &RunArguments) -> bool {
+    match arguments.control.as_deref() {
+        Some(place) => place != NONE,
+        None => !arguments.virtual_time || arguments.stay || arguments.paused || arguments.speed.is_some(),
+    }
+}
+
+/// True if somebody can reach the fleet, as far as the command line says.
+pub(super) fn is_reached(arguments: &RunArguments) -> bool {
+    has_socket(arguments) || arguments.network.serve.is_some()
 }
 
 /// Listens on the network if the command line says so, with the tokens in its files, or new ones beside the socket.

@@ -1,7 +1,6 @@
 //! What ends a run from outside: signals, and a reader of standard output that goes away.
 
-use std::mem::{ManuallyDrop, MaybeUninit};
-use std::ptr;
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
@@ -14,6 +13,7 @@ use saoms_lang::model::Hangup;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
+use crate::command::signals::{ending_signals, is_ignored};
 use crate::output::{Place, eprint, limit_patience, lose_terminal, wait_for_no_reader};
 use crate::{Exit, guard};
 use guard::keep_signals;
@@ -49,10 +49,8 @@ impl Signalled {
     /// So does the first one before the fleet starts, and while it starts after `grace`, which is also the time for a
     /// reader of standard output that reads nothing.
     pub(super) fn new(grace: Duration) -> Signalled {
-        // Who starts it with `nohup` wants it to outlive the terminal.
-        let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
         guard::watch_ends();
-        let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
+        let signals = Signals::new(ending_signals());
         let state = Arc::new(State {
             grace,
             has_come: AtomicBool::new(false),
@@ -127,6 +125,11 @@ impl OperatorEnd {
         limit_patience(self.0.grace);
         fleet.down();
         State::give_up(&self.0, Exit::Failed);
+    }
+
+    /// True if a signal has come that ends the run.
+    pub(super) fn has_come(&self) -> bool {
+        self.0.has_come.load(Ordering::SeqCst)
     }
 
     /// Ends every component through its shutdown, as a signal does.
@@ -239,15 +242,6 @@ fn end_now(exit: Exit) -> ! {
         eprint(&guard::still_moves(&name));
     }
     guard::exit(exit as i32)
-}
-
-/// True if the process was started so that it ignores the signal.
-pub(in crate::command) fn is_ignored(signal: i32) -> bool {
-    let mut action = MaybeUninit::<libc::sigaction>::uninit();
-    // SAFETY: no new action is given, and the present one is written to where there is room for it.
-    let is_known = unsafe { libc::sigaction(signal, ptr::null(), action.as_mut_ptr()) } == 0;
-    // SAFETY: the call has written it.
-    is_known && unsafe { action.assume_init() }.sa_sigaction == libc::SIG_IGN
 }
 
 /// Ends the fleet when nobody reads standard output any more, also while there is nothing to write; not if that comes

@@ -220,7 +220,11 @@ pub(super) fn play_all(path: &Path, events: Vec<PlannedEvent>, handle: &Handle) 
     let counter = format!("faults {}", path::absolute(path).unwrap_or_default().display());
     let taken = handle.counter(&counter);
     let mut number = 0;
-    let _together = handle.together();
+    let together = handle.together();
+    if together.is_too_late() {
+        // The next program plays them.
+        return;
+    }
     for event in events {
         let is_known = !event.is_fault() && {
             number += 1;

@@ -44,9 +44,9 @@ pub(super) fn open(path: &Path, arguments: &RunArguments, alerts: &Arc<AlertList
         composites: arguments.fleet.files.iter().map(|path| path.display().to_string()).collect(),
         node: arguments.node.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        keep: arguments.history.keep,
     };
-    History::open(path, run, Box::new(Told { alerts: Arc::clone(alerts) })).map_err(|error| {
+    let told = Told { alerts: Arc::clone(alerts) };
+    History::open(path, run, arguments.history.keep, Box::new(told)).map_err(|error| {
         eprint(&format!("error: `--history`: {error}\n\n1 error: nothing was started\n"));
         Exit::WrongInput
     })

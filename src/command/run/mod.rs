@@ -2,6 +2,7 @@
 
 mod alerts;
 mod arguments;
+mod changes;
 mod console;
 mod control;
 mod ending;
@@ -21,16 +22,20 @@ mod state;
 mod status_line;
 mod summary;
 mod timeline_file;
+mod watch;
+mod watched_files;
+mod web;
 
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
-use saoms_control::{AlertList, LossCounts};
+use saoms_control::{AlertList, FigureWatch, LossCounts, Recorder};
 use saoms_core::observe::{AdaptationWatch, InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
@@ -45,9 +50,9 @@ use crate::guard::has_own_end;
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use alerts::AlertDelivery;
 pub(crate) use arguments::{ConsoleStyle, RunArguments};
+use changes::FleetChanges;
 use console::Console;
 use control::Control;
-pub(super) use ending::is_ignored;
 use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers, Unreadable};
 use faults::{FaultScript, Known, play_all, report_wrong};
@@ -58,15 +63,20 @@ use networks::{Door, Networks, Refused};
 use notify::Notifier;
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
-use reload::{Reload, Watched};
+use reload::{Reload, libraries};
 use report_file::ReportFile;
 use timeline_file::TimelineFile;
+use watch::FileWatch;
+use web::{Web, WebAccesses};
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let signals = Signalled::new(arguments.grace);
     let files = &arguments.fleet;
-    if arguments.reload && files.files.iter().any(|path| path == Path::new(INPUT)) {
-        eprint("error: `--reload` reads composites again, which standard input cannot be\n");
+    let reads_again = [("--reload", arguments.reload), ("--watch", arguments.watch)];
+    if let Some((option, _)) = reads_again.iter().find(|(_, is_given)| *is_given)
+        && files.files.iter().any(|path| path == Path::new(INPUT))
+    {
+        eprint(&format!("error: `{option}` reads composites again, which standard input cannot be\n"));
         return Exit::WrongInput;
     }
     if let Some(why) = arguments.log.without_effect(arguments) {
@@ -80,7 +90,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         );
         return Exit::WrongInput;
     }
-    let Some((assembly, networks, read)) = assembly(arguments, files) else { return Exit::WrongInput };
+    let Some(Prepared { assembly, networks, web, read, watched, since }) = prepared(arguments, files) else {
+        return Exit::WrongInput;
+    };
+    if let Err(exit) = web.judge() {
+        return exit;
+    }
     if let Err(exit) = Outputs::beside(arguments.events.clone()).with_streams() {
         return exit;
     }
@@ -123,8 +138,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         eprint("error: no component class of this program draws paths\n");
         return Exit::WrongInput;
     }
-    let watched = arguments.reload.then(|| Watched::of(&assembly));
-    if watched.as_ref().is_some_and(Watched::is_empty) {
+    let libraries = libraries(&assembly);
+    if arguments.reload && libraries.is_empty() {
         eprint(
             "error: `--reload` has nothing to watch: no component of the fleet comes from a plugin\n  = help: leave it out, or name the plugin with `--plugin`\n\n1 error: nothing was started\n",
         );
@@ -156,6 +171,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         && is_standard(&report)
         && [&picture, &timeline].into_iter().all(is_standard);
     let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some() || timeline.is_some());
+    let recorder = report.as_ref().filter(|_| !arguments.short_report);
+    let figures = Arc::new(FigureWatch::new(control::is_reached(arguments)));
+    let recorder = recorder.map(|_| {
+        let components = assembly.components.len();
+        Arc::new(Recorder::new(title(arguments), components, Arc::clone(&alerts), Arc::clone(&figures)))
+    });
     let report = report.map(|output| Arc::new(ReportFile { output, is_short: arguments.short_report }));
     let picture = picture.zip(paths);
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths, &assembly)));
@@ -174,17 +195,21 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(timeline.clone().map(|timeline| timeline as Arc<dyn Observer>));
     observers.push(Arc::clone(&alerts) as Arc<dyn Observer>);
     observers.extend(adaptation.map(|watch| watch as Arc<dyn Observer>));
+    let is_recorded = recorder.is_some();
+    observers.extend(recorder.map(|recorder| recorder as Arc<dyn Observer>));
     let watch = arguments.invariants.then(|| Arc::new(InvariantWatch::default()));
     observers.extend(watch.clone().map(|watch| watch as Arc<dyn Observer>));
     let mut notes = Vec::new();
     let whole = all_nodes(arguments, &assembly);
-    let control = match Control::of(arguments, &mut notes) {
+    let control = match Control::of(arguments, &figures, &mut notes) {
         Ok(control) => control,
         Err(exit) => return exit,
     };
+    observers.extend((is_recorded || control.is_some()).then_some(figures as Arc<dyn Observer>));
     observers.extend(control.iter().flat_map(Control::observers));
     signals.starts(assembly.run.hangup);
-    let (mut server, mut clients) = (None, Vec::new());
+    let (mut server, mut clients, mut changes) = (None, Vec::new(), None);
+    let (policy, accesses) = (assembly.run.clone(), WebAccesses::of(&assembly));
     let door: Arc<Door> = Arc::default();
     let mut until_events = None;
     let before = |handle: &Handle| {
@@ -202,8 +227,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
         clients = networks.join(handle, &signals, &door)?;
-        server = control
-            .and_then(|control| control.serve(handle, &signals, &numbers, losses.clone(), &alerts, files.clone()));
+        let url = control.as_ref().and_then(|control| control.url().map(str::to_owned));
+        let changing = FleetChanges::new(handle.clone(), arguments, (policy, accesses), (libraries, watched, since));
+        let changing = changes.insert(Arc::new(changing));
+        server =
+            control.and_then(|control| control.serve(handle, &signals, &numbers, losses.clone(), &alerts, changing));
+        web.start(handle, url.as_deref(), server.is_some());
         door.open(server.as_ref());
         Ok(())
     };
@@ -222,7 +251,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         end_without_reader(fleet.handle(), &signals);
     }
     let hold = arguments.stay.then(|| fleet.handle().hold());
-    let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
+    let reload = changes.iter().filter(|_| arguments.reload);
+    let reload: Vec<Reload> =
+        reload.map(|changes| Reload::start(Arc::clone(changes), arguments.node.clone(), fleet.handle())).collect();
+    let watching = changes.iter().filter(|_| arguments.watch);
+    let coloured = std::io::stderr().is_terminal();
+    let watching: Vec<FileWatch> =
+        watching.map(|changes| FileWatch::start(Arc::clone(changes), fleet.handle(), coloured)).collect();
     if let Some(path) = &arguments.faults {
         play_all(path, faults, &fleet.handle());
     }
@@ -241,7 +276,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     drop(clients);
     let outcome = fleet.run_to_end().outcome;
     delivery.finish();
-    drop((hold, reload, server, notifier));
+    drop((hold, reload, watching, server, notifier));
     let violations = watch.iter().flat_map(|watch| watch.violations()).inspect(|one| {
         eprint(&format!("error: [{}] {}: {}\n", one.at, one.invariant, one.text));
     });
@@ -271,22 +306,40 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 /// may look at a page of the output.
 const PAGER_PATIENCE: Duration = Duration::from_secs(60);
 
-/// The fleet to run with its networks, and the files that were read; `None` after its errors have been shown. Texts and
-/// diagnostics are dropped here: a run may last for days.
-fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Networks, Vec<PathBuf>)> {
-    let languages = EventLanguage::linked().filter(|_| arguments.events.is_some());
-    let settled: Vec<String> = languages.flat_map(|one| one.settles).map(|code| format!("{code}=allow")).collect();
+/// A fleet that can start.
+struct Prepared {
+    assembly: Assembly,
+    networks: Networks,
+    web: Web,
+    /// All files that were read: no output may go there.
+    read: Vec<PathBuf>,
+    /// Those of them that say what the fleet is.
+    watched: Vec<PathBuf>,
+    /// The time at which that began.
+    since: SystemTime,
+}
+
+/// The fleet to run; `None` after its errors have been shown. Texts and diagnostics are dropped here: a run may last
+/// for days.
+fn prepared(arguments: &RunArguments, files: &FleetArguments) -> Option<Prepared> {
+    let since = SystemTime::now();
     let compilation = compiled(files, |project, classes| {
-        project.severities(settled).node(arguments.node.clone()).to_start().compile(classes)
+        project.severities(settled(arguments)).node(arguments.node.clone()).to_start().compile(classes)
     });
     let mut compilation = compilation.ok()?;
-    let mut networks = None;
+    let (mut networks, mut web) = (None, Web::default());
     if let Some(whole) = compilation.output.take() {
         let assembly = arguments.node.iter().fold(whole, |whole, node| whole.at(node));
         let assembly = compilation.output.insert(assembly);
         match Networks::of(arguments, assembly, &mut compilation.diagnostics) {
-            Ok(found) => networks = Some(found),
+            Ok(found) => {
+                networks = Some(found);
+                web = Web::of(arguments, assembly, &mut compilation.diagnostics);
+            }
             Err(Refused) => compilation.output = None,
+        }
+        if compilation.diagnostics.iter().any(|one| one.severity == Severity::Error) {
+            compilation.output = None;
         }
     }
     let shown = DiagnosticReport::from(&compilation);
@@ -303,13 +356,20 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
     if compilation.output.is_none() && arguments.format == Format::Human && errors > 0 {
         eprint(&format!("\n{}: nothing was started\n", counted(errors, "error")));
     }
+    let watched = compilation.sources.open().files_read();
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.iter().chain(&arguments.faults).cloned());
     let assembly = compilation.output?;
     if !has_components(&assembly, "run") {
         return None;
     }
-    Some((assembly, networks?, read))
+    Some(Prepared { assembly, networks: networks?, web, read, watched, since })
+}
+
+/// The severities that follow from the other options of a run.
+fn settled(arguments: &RunArguments) -> Vec<String> {
+    let languages = EventLanguage::linked().filter(|_| arguments.events.is_some());
+    languages.flat_map(|one| one.settles).map(|code| format!("{code}=allow")).collect()
 }
 
 fn settings(arguments: &RunArguments) -> Settings {

@@ -15,7 +15,7 @@ use saoms_api::host::format_duration;
 use saoms_core::network::exchange::Settings;
 use saoms_core::network::rights::Granted;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession, peers};
-use saoms_core::network::{Client, Membership, Port};
+use saoms_core::network::{Client, Entry, Membership, Port, enter};
 use saoms_core::schedule::{Handle, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Diagnostic;
@@ -23,7 +23,6 @@ use saoms_lang::model::Hangup;
 
 use super::ending::Signalled;
 use super::{RunArguments, title};
-use crate::output::eprint;
 pub(super) use hooks::Door;
 use hooks::Hooks;
 pub(in crate::command) use private::read as read_private;
@@ -36,20 +35,24 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// Time without a sign of life after which a program is missed: three of its longest periods, between these.
 const LEAST_PATIENCE: Duration = Duration::from_secs(1);
 const LONGEST_PATIENCE: Duration = Duration::from_secs(10);
-/// Bytes of events that are kept for programs that have not received them, at most.
-const LIMIT: usize = 256 << 20;
 
 /// The networks that a run takes part in.
 #[derive(Debug)]
 pub(super) struct Networks {
     all: Vec<Network>,
     name: String,
+    /// The node of the program.
+    node: Option<String>,
     /// Time without a sign of life after which others miss this program.
     patience: Duration,
     /// The time of `--for`.
     limit: Option<Duration>,
     /// Time for which a network is waited for that is not there yet; `None` is for ever.
     wait: Option<Duration>,
+    /// Time for which the end is waited with for programs that lack events.
+    linger: Duration,
+    /// Bytes of events that are kept for programs that have not received them, at most.
+    backlog: usize,
     /// What a lost link leads to.
     lost_link: Hangup,
     /// What has to be said once the run has a log.
@@ -69,7 +72,7 @@ struct Network {
     membership: Membership,
 }
 
-/// The reason for which there are no networks, which was reported or is in the list of diagnostics.
+/// The reason for which there are no networks, which is in the list of diagnostics.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Refused;
 
@@ -78,7 +81,7 @@ impl Networks {
     /// `diagnostics`.
     ///
     /// # Errors
-    /// There is no transport for a url, which was reported, or the settings of a network are wrong.
+    /// There is no transport for a url, or the settings of a network are wrong.
     pub(super) fn of(
         arguments: &RunArguments,
         assembly: &Assembly,
@@ -87,9 +90,12 @@ impl Networks {
         let mut networks = Networks {
             all: Vec::new(),
             name: arguments.node.clone().unwrap_or_else(|| title(arguments)),
+            node: arguments.node.clone(),
             patience: LEAST_PATIENCE,
             limit: arguments.limit,
             wait: arguments.connect_timeout,
+            linger: arguments.linger,
+            backlog: usize::try_from(arguments.backlog).unwrap_or(usize::MAX),
             lost_link: assembly.run.lost_link.unwrap_or(Hangup::GoOn),
             notes: Vec::new(),
         };
@@ -99,7 +105,6 @@ impl Networks {
         let periods = assembly.components.iter().filter_map(|spec| spec.task.as_ref()).map(|task| task.period);
         networks.patience =
             periods.max().map_or(LEAST_PATIENCE, |period| (3 * period).clamp(LEAST_PATIENCE, LONGEST_PATIENCE));
-        let mut is_missing = false;
         let name = networks.name.clone();
         let mut resolver = Resolver { assembly, name: &name, faults: Vec::new() };
         for (url, described) in settings::described(assembly) {
@@ -137,18 +142,12 @@ impl Networks {
                 Err(error @ TransportError::Missing { .. }) if listen => networks.notes.push(format!(
                     "the topics of `{url}` are served inside this program, and no other program can join them: {error}"
                 )),
-                Err(error) => {
-                    eprint(&format!("error: components of the fleet are on the network `{url}`, but {error}\n"));
-                    is_missing = true;
-                }
+                Err(error) => resolver.no_transport(&url, &described, &error),
             }
         }
         let is_wrong = !resolver.faults.is_empty();
         diagnostics.extend(resolver.faults);
-        if is_missing && !is_wrong {
-            eprint("\nnothing was started\n");
-        }
-        if is_missing || is_wrong { Err(Refused) } else { Ok(networks) }
+        if is_wrong { Err(Refused) } else { Ok(networks) }
     }
 
     /// Joins the networks, in the code that gets the control before components initialize. Waits for networks that are
@@ -180,11 +179,21 @@ impl Networks {
                 program,
                 name: self.name.clone(),
                 patience: u64::try_from(self.patience.as_nanos()).unwrap_or(u64::MAX),
-                limit: LIMIT,
+                limit: self.backlog,
+                linger: u64::try_from(self.linger.as_nanos()).unwrap_or(u64::MAX),
                 components: components.clone(),
                 others,
                 memory: fleet.recall(program),
             };
+            let tell = |text: String| handle.note(Level::Warning, text);
+            match enter(&session, &port, &member, tell, || signals.has_come()) {
+                Ok(Entry::Free) => {}
+                Ok(Entry::Over) => break,
+                Err(why) => {
+                    let error = in_node(&why, self.node.as_deref());
+                    return Err(StartError::Network { url: settings.url.clone(), error });
+                }
+            }
             let client = Client::start(session, &port, member, membership, fleet);
             clients.push(client.map_err(|error| who.error(&error))?);
         }
@@ -276,6 +285,11 @@ impl Who<'_> {
             }
         }
     }
+}
+
+/// What is wrong with the components of a node.
+fn in_node(why: &str, node: Option<&str>) -> String {
+    node.map_or_else(|| why.to_owned(), |node| format!("{why}; this program runs node `{node}`"))
 }
 
 fn owned((name, address): (&str, &str)) -> (String, String) {

@@ -1,9 +1,8 @@
 //! `saoms run --reload`: components whose library is rebuilt are replaced while the fleet runs.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::os::unix::fs::MetadataExt;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,18 +13,16 @@ use saoms_core::schedule::{ChangeError, Handle};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Severity;
 
-use crate::arguments::FleetArguments;
+use super::changes::FleetChanges;
+use super::watched_files::{LOOK, WatchedFiles};
 use crate::fleet::{DiagnosticReport, compiled};
 use crate::output::eprint_coloured;
-
-/// The time between two looks at the files. A file is loaded when two looks in a row find it unchanged.
-const LOOK: Duration = Duration::from_millis(300);
 
 /// The time after which a component that could not be replaced is asked again.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// The identity of a file's content: inode, size, and time of its last change.
-type Stamp = (u64, u64, i64, i64);
+/// Who replaces components of a new build, in the journal.
+const BY: &str = "reload";
 
 /// The watch over the libraries of a fleet, until it is dropped.
 pub(crate) struct Reload {
@@ -33,37 +30,27 @@ pub(crate) struct Reload {
 }
 
 struct Watcher {
-    arguments: FleetArguments,
+    changes: Arc<FleetChanges>,
     handle: Handle,
-    /// The paths of all components, in the order of the assembly.
-    components: Vec<String>,
     /// The node that runs; empty for the whole fleet.
     node: String,
-    files: BTreeMap<PathBuf, FileStamps>,
+    files: WatchedFiles,
     /// Components that have to be asked again.
     waiting: Vec<ComponentSpec>,
     asked: Instant,
 }
 
-struct FileStamps {
-    loaded: Option<Stamp>,
-    /// The file at the last look.
-    seen: Option<Stamp>,
-}
-
 impl Reload {
     /// Begins to watch, on a thread of its own.
-    pub(crate) fn start(arguments: &FleetArguments, assembly: &Watched, handle: Handle) -> Reload {
+    pub(crate) fn start(changes: Arc<FleetChanges>, node: Option<String>, handle: Handle) -> Reload {
         let (end, ended) = channel();
-        let known = |path: &PathBuf| {
-            let stamp = stamp(path);
-            (path.clone(), FileStamps { loaded: stamp, seen: stamp })
-        };
+        let mut files = WatchedFiles::default();
+        let present = changes.present();
+        files.add(present.libraries, present.since);
         let watcher = Watcher {
-            arguments: arguments.clone(),
-            components: assembly.components.clone(),
-            node: assembly.node.clone(),
-            files: assembly.files.iter().map(known).collect(),
+            changes,
+            node: node.unwrap_or_default(),
+            files,
             waiting: Vec::new(),
             asked: Instant::now(),
             handle: handle.clone(),
@@ -76,27 +63,10 @@ impl Reload {
     }
 }
 
-/// The parts of an assembly that are watched.
-pub(crate) struct Watched {
-    components: Vec<String>,
-    files: Vec<PathBuf>,
-    /// The node that runs; empty for the whole fleet.
-    node: String,
-}
-
-impl Watched {
-    pub(crate) fn of(assembly: &Assembly) -> Watched {
-        let components = assembly.components.iter();
-        let mut files: Vec<PathBuf> = components.flat_map(origins).map(Path::to_owned).collect();
-        files.sort();
-        files.dedup();
-        Watched { components: paths(assembly), files, node: assembly.node.to_string() }
-    }
-
-    /// True if there is no library.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.files.is_empty()
-    }
+/// The libraries of a fleet.
+pub(crate) fn libraries(assembly: &Assembly) -> Vec<PathBuf> {
+    let all: BTreeSet<&Path> = assembly.components.iter().flat_map(origins).collect();
+    all.into_iter().map(Path::to_owned).collect()
 }
 
 /// The libraries that a component's class and loops come from.
@@ -104,19 +74,13 @@ fn origins(component: &ComponentSpec) -> impl Iterator<Item = &Path> {
     component.class.origin().into_iter().chain(component.loops.iter().filter_map(|one| one.class.origin()))
 }
 
-fn paths(assembly: &Assembly) -> Vec<String> {
-    assembly.components.iter().map(|component| component.path.clone()).collect()
-}
-
-fn stamp(path: &Path) -> Option<Stamp> {
-    let found = fs::metadata(path).ok()?;
-    Some((found.ino(), found.size(), found.mtime(), found.mtime_nsec()))
-}
-
 impl Watcher {
     fn watch(mut self, ended: &Receiver<()>) {
         while ended.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
-            let changed: Vec<PathBuf> = self.files.iter_mut().filter_map(|(path, known)| known.look(path)).collect();
+            let changed = self.files.look();
+            // A change of the fleet may have brought others.
+            let present = self.changes.present();
+            self.files.add(present.libraries, present.since);
             if !changed.is_empty() {
                 self.reload(&changed);
             }
@@ -133,7 +97,8 @@ impl Watcher {
         let names = one_line(&names.join(", ")).into_owned();
         let kept = |why: &str| format!("{names} changed: {why}; the fleet continues with the earlier build");
         // Faults of a library have been reported already.
-        let Ok(compilation) = compiled(&self.arguments, |project, classes| project.to_start().compile(classes)) else {
+        let files = self.changes.present().files;
+        let Ok(compilation) = compiled(&files, |project, classes| project.to_start().compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
         let Some(whole) = &compilation.output else {
@@ -142,11 +107,15 @@ impl Watcher {
         };
         let part = (!self.node.is_empty()).then(|| whole.clone().at(&self.node));
         let assembly = part.as_ref().unwrap_or(whole);
-        if paths(assembly) != self.components {
+        let plan = self.handle.plan(assembly);
+        if !(plan.added.is_empty() && plan.removed.is_empty()) {
             return self.handle.note(
                 Level::Error,
-                kept("the composites have other components than when the fleet started: restart it"),
+                kept("the composites have other components than the fleet: `saoms apply` them first"),
             );
+        }
+        if let Some(why) = self.changes.web_refusal(assembly) {
+            return self.note(Level::Error, &kept(&why));
         }
         self.handle.note(Level::Info, format!("{names} changed: its components are replaced"));
         let affected = assembly
@@ -168,9 +137,10 @@ impl Watcher {
         for component in components {
             let next = component.clone();
             let path = component.path.clone();
-            match self.handle.replace(component) {
+            match self.handle.replace(component, Some(BY)) {
                 Ok(_) => {}
-                Err(ChangeError::NotNow { why, .. }) => {
+                Err(error @ (ChangeError::NotNow { .. } | ChangeError::Busy | ChangeError::Meanwhile)) => {
+                    let why = error.reason();
                     if !again {
                         self.note(Level::Info, &format!("component `{path}` is replaced later: {why}"));
                     }
@@ -188,17 +158,5 @@ impl Watcher {
                 }
             }
         }
-    }
-}
-
-impl FileStamps {
-    /// The path, if its file differs from the loaded one and is complete.
-    fn look(&mut self, path: &Path) -> Option<PathBuf> {
-        let now = stamp(path);
-        let settled = std::mem::replace(&mut self.seen, now) == now;
-        (settled && now.is_some() && now != self.loaded).then(|| {
-            self.loaded = now;
-            path.to_owned()
-        })
     }
 }

@@ -148,10 +148,10 @@ mod tests {
 
     #[test]
     fn trouble_is_told_below_the_table() {
-        let quiet = ComponentReport { name: "Quiet".to_owned(), executions: 9, ..ComponentReport::default() };
+        let quiet = ComponentReport { name: "Quiet".into(), executions: 9, ..ComponentReport::default() };
         assert_eq!(problem_lines(std::slice::from_ref(&quiet)), "");
-        let late = ComponentReport { name: "Late".to_owned(), deadline_misses: 2, ..quiet.clone() };
-        let weak = ComponentReport { name: "Weak".to_owned(), failures: 1, slow: 1, ..ComponentReport::default() };
+        let late = ComponentReport { name: "Late".into(), deadline_misses: 2, ..quiet.clone() };
+        let weak = ComponentReport { name: "Weak".into(), failures: 1, slow: 1, ..ComponentReport::default() };
         assert_eq!(
             problem_lines(&[quiet, late.clone(), weak]),
             "\nLate: 2 executions ended after the deadline\nWeak: 1 failure, 1 execution took longer than the budget\n"

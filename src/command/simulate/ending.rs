@@ -3,13 +3,8 @@
 use std::process::Child;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use saoms_core::schedule::start_thread;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
-
-use crate::command::run::is_ignored;
+use crate::command::signals::at_first_signal;
 use crate::output::eprint;
-use crate::{Exit, guard};
 
 /// A process that runs seeds, for those who end it.
 pub(super) type Shared = Arc<Mutex<Child>>;
@@ -19,23 +14,16 @@ static WORKERS: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
 
 /// Ends the process and those that run seeds for it at the first signal.
 pub(super) fn end_at_signals() {
-    // Who starts it with `nohup` wants it to outlive the terminal.
-    let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
-    let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
-    let spawned = signals.and_then(|mut signals| {
-        guard::handles_ends();
-        start_thread("signals", move || {
-            if signals.forever().next().is_some() {
-                // One whose end is waited for has nothing to do any more.
-                let workers = WORKERS.lock().unwrap_or_else(PoisonError::into_inner);
-                for worker in workers.iter() {
-                    let _ = worker.try_lock().map(|mut child| child.kill());
-                }
-                guard::exit(Exit::Interrupted as i32);
-            }
-        })
+    let handled = at_first_signal(|| {
+        // One whose end is waited for has nothing to do any more.
+        let workers = WORKERS.lock().unwrap_or_else(PoisonError::into_inner);
+        for worker in workers.iter() {
+            let _ = worker.try_lock().map(|mut child| child.kill());
+        }
+        // It stays locked until the process has ended, so that nobody starts another one.
+        std::mem::forget(workers);
     });
-    if let Err(error) = spawned {
+    if let Err(error) = handled {
         eprint(&format!("warning: a signal will end the command with another exit code than 130: {error}\n"));
     }
 }

@@ -49,6 +49,33 @@ fn robots_with_five_free_blocks_each_are_a_crowd() {
 }
 
 #[test]
+fn robots_with_small_batteries_need_more_room() {
+    let site = |robots_: std::ops::Range<usize>, length: usize, properties: &str| {
+        crowds(&row("", length, robots_, &format!("{properties}|"))).join("\n")
+    };
+    let small = |moves: u32, robots: usize, blocks: usize| {
+        format!(
+            "S5029 a full battery lasts for {moves} moves, and {robots} robots share {blocks} free blocks: too little is \
+            left for waiting on the way to the charger, and some may be stranded"
+        )
+    };
+    assert_eq!(site(1..7, 150, "discharge=2.5"), small(40, 6, 150));
+    assert_eq!(site(1..7, 151, "discharge=2.5"), "");
+    assert_eq!(site(1..6, 100, "discharge=2.5"), "", "a few robots get out of each other's way");
+    assert_eq!(site(1..7, 100, "discharge=2"), "");
+    assert_eq!(site(1..7, 30, "discharge=2.5"), crowd(6, 30), "there is no room, whatever batteries they have");
+    // Each move takes two executions, and the manual's battery lasts for 50.
+    let slow = row("", 100, 1..7, "").replace("height=1", "height=1|moveTime=200ms");
+    assert_eq!(crowds(&slow), [small(25, 6, 100)]);
+    let physical = "chargePerSecond=5|dischargePerSecond=0|dischargePerBlock";
+    assert_eq!(site(1..7, 100, &format!("{physical}=2.5")), small(40, 6, 100));
+    assert_eq!(site(1..7, 100, &format!("{physical}=2")), "");
+    let mixed = |small: &str| row("", 175, 1..7, "discharge=1") + &robots("", 7..8, "discharge=4") + small;
+    assert_eq!(crowds(&mixed("")), [""; 0], "those that can wait make way for a few others");
+    assert_eq!(crowds(&mixed(&robots("", 8..13, "discharge=4"))), [small(25, 12, 175)]);
+}
+
+#[test]
 fn a_crowd_is_on_one_map() {
     // Six robots in two worlds are none, whatever their numbers.
     assert_eq!(crowds(&(row("North", 15, 1..4, "") + &row("South", 15, 1..4, ""))), [""; 0]);

@@ -10,3 +10,4 @@ mod mistakes;
 mod rules;
 mod shared;
 mod sites;
+mod zones;

@@ -17,6 +17,9 @@ use crate::support::{Program, command, empty_folder, saoms_in, text};
 
 /// Number of kills, unless `SAOMS_KILLS` says another one.
 const KILLS: u64 = 12;
+/// Components that crash in the second test.
+const CRASHING: [&str; 9] =
+    ["Robot1", "Robot2", "Robot3", "Robot4", "World", "Zone", "Master", "MasterRobot", "Environment"];
 /// Most pieces that are open at once, so that the robots keep up.
 const MOST_OPEN: u64 = 12;
 /// Time within which a program answers that starts.
@@ -97,14 +100,32 @@ pub(super) fn wait_for_pieces(program: &mut Program, socket: &Path, least: u64) 
 
 #[test]
 fn nothing_that_was_accepted_is_lost_or_done_twice() {
-    let folder = empty_folder("memory-killed");
-    let fleet = crossing().replace("at 0.1s 80 times luggage random to random", "at 0.1s luggage (1,1) to (2,2)");
+    kill_at_random_moments("memory-killed", false);
+}
+
+#[test]
+fn nothing_that_was_accepted_is_lost_or_done_twice_while_components_crash() {
+    kill_at_random_moments("memory-killed-crashing", true);
+}
+
+fn kill_at_random_moments(folder: &str, crashes: bool) {
+    let folder = empty_folder(folder);
+    let mut fleet = crossing().replace("at 0.1s 80 times luggage random to random", "at 0.1s luggage (1,1) to (2,2)");
+    if crashes {
+        let period = r#"<property name="period">10</property>"#;
+        let crashing = fleet.replace(period, &format!(r#"{period}<property name="restart">onFailure</property>"#));
+        assert_ne!(crashing, fleet);
+        fleet = crashing;
+    }
     fs::write(folder.join("f.composite"), fleet).unwrap();
     let kills = std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS);
     let socket = folder.join("socket");
     let mut dice = Dice(7);
+    // One after the other: who crashes twice before it has executed loses what it heard.
+    let mut crashing = CRASHING.iter().cycle();
     // The pieces that were accepted, and those that were sent without an answer: these may be there.
     let (mut accepted, mut unanswered) = (1, 0);
+    let mut has_crashed = false;
     for kill in 0..kills {
         let mut program = start(&folder);
         if dice.below(4) == 0 {
@@ -127,6 +148,11 @@ fn nothing_that_was_accepted_is_lost_or_done_twice() {
                 let answer = ask(&socket, "POST", "/v1/events", &line).unwrap();
                 assert_eq!(answer["events"], 1);
                 accepted += 1;
+                if crashes {
+                    let who = crashing.next().unwrap();
+                    let line = format!("crash {who} restart {}ms", 1 + dice.below(40));
+                    ask(&socket, "POST", "/v1/events", &line).unwrap();
+                }
             }
             sleep(until.saturating_duration_since(Instant::now()));
             // One that has no answer before the kill.
@@ -138,7 +164,9 @@ fn nothing_that_was_accepted_is_lost_or_done_twice() {
             sleep(Duration::from_micros(dice.below(15_000)));
         }
         drop(program);
+        has_crashed |= fs::read_to_string(folder.join("told")).unwrap().contains("it crashes by fault injection");
     }
+    assert_eq!(has_crashed, crashes);
     let output = saoms_in(&folder, &["run", "f.composite", "--state", "state", "--invariants", "--control", "none"]);
     let told = text(&output);
     assert_eq!(output.status.code(), Some(0), "{told}");

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::{Running, component, composite, fleet};
 use crate::peers::browser::Browser;
+use crate::support::root;
 
 /// A fleet that is served to browsers.
 struct Shown {
@@ -144,7 +145,9 @@ fn a_person_sees_the_fleet_and_steers_it() {
         ("components", "document.querySelectorAll('table.components tbody tr').length === 4"),
         ("topics", "document.body.textContent.includes('POSTOPIC')"),
         ("log", "document.querySelectorAll('ol.log li').length > 3"),
-        ("plots", "document.querySelectorAll('.plot .line').length > 5"),
+        ("plots", "[...document.querySelectorAll('.plot .line')].filter((one) => one.getAttribute('d')).length > 5"),
+        // They begin with the run, not with the page.
+        ("plots", "[...document.querySelectorAll('.plot .grid text')].some((one) => one.textContent === '0.0 s')"),
         ("assembly", "document.querySelector('.picture img').naturalWidth > 100"),
     ] {
         browser.open(&format!("{}/#/{part}", shown.url));
@@ -182,6 +185,88 @@ fn who_may_view_can_press_no_button() {
     browser.click("form[action='/logout'] button");
     browser.until("location.pathname === '/login'");
     assert_eq!(browser.value("fetch('/v1/status').then((answer) => answer.status)"), 401);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn a_robot_is_steered_by_keyboard() {
+    let Some(mut browser) = Browser::start("dashboard-keyboard") else { return };
+    let shown = shown(&fleet(), &[]);
+    let running = &shown.running;
+    browser.open(&shown.url);
+    browser.until("!!document.querySelector('#token')");
+    browser.tab_to("focus.id === 'token'");
+    shown.tokens[0].chars().for_each(|letter| browser.press(&letter.to_string()));
+    browser.press("Enter");
+    browser.until("document.querySelectorAll('tr[data-robot]').length === 1");
+    browser.tab_to("focus.className === 'skip'");
+    browser.tab_to("focus.tagName === 'CANVAS'");
+    browser.press("n");
+    browser.until("document.querySelector('.side h2')?.textContent === 'Robot1'");
+    let stopped = || running.component("Robot1")["emergency_stop"] == true;
+    let state = || running.component("Robot1")["state"].clone();
+    browser.tab_to("focus.dataset.order === 'Stop'");
+    browser.press("Enter");
+    browser.until(&says("tr[data-robot=Robot1] .state", "stopped"));
+    assert!(stopped());
+    browser.tab_to("focus.dataset.order === 'Release' && !!focus.closest('.side')");
+    browser.press("Enter");
+    browser.until("!document.querySelector('.side [data-order=Stop]').hidden");
+    assert!(!stopped());
+    browser.tab_to("focus.dataset.order === 'Sleep'");
+    browser.press("Enter");
+    browser.until("!document.querySelector('.side [data-order=Wake]').hidden");
+    assert_eq!(state(), "idle");
+    browser.tab_to("focus.dataset.order === 'Wake'");
+    browser.press("Enter");
+    browser.until("!document.querySelector('.side [data-order=Sleep]').hidden");
+    assert_eq!(state(), "running");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn it_fits_a_phone_and_follows_the_colours_of_the_system() {
+    let Some(mut browser) = Browser::start("dashboard-phone") else { return };
+    let shown = shown(&fleet(), &[]);
+    browser.be_screen(390, 844);
+    shown.log_in(&mut browser, &shown.tokens[0]);
+    browser.until("document.querySelectorAll('tr[data-robot]').length === 1");
+    for part in ["floor", "component/Robot1", "components", "plots", "topics", "alerts", "log", "assembly"] {
+        browser.open(&format!("{}/#/{part}", shown.url));
+        browser.until("document.querySelector('main').textContent.length > 20");
+        // Nothing has to be moved sideways.
+        let widths = browser.value("[document.documentElement.scrollWidth, innerWidth].join()");
+        assert_eq!(widths, "390,390", "{part}");
+    }
+    let light = "getComputedStyle(document.body).backgroundColor.match(/[\\d.]+/g).slice(0, 3).reduce((sum, one) => sum + +one, 0)";
+    browser.prefer("dark");
+    browser.until(&format!("{light} < 200"));
+    browser.prefer("light");
+    browser.until(&format!("{light} > 550"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+/// Robots that meet, in two zones: who waits for whom is what the fleet says, and is grants, borders and reasons.
+#[test]
+fn conflicts_and_zones_of_an_airport_are_shown() {
+    let Some(mut browser) = Browser::start("dashboard-conflicts") else { return };
+    let airport = fs::read_to_string(root().join("composites/airport.composite")).unwrap();
+    let (before, after) = airport.split_once("<property name=\"scenario\">").unwrap();
+    let work = "from 1s every 200ms 5000 times luggage (0,0)..(10,10) to (0,0)..(10,10)";
+    let busy =
+        [before, "<property name=\"scenario\">", work, "</property>", after.split_once("</property>").unwrap().1];
+    let shown = shown(&busy.concat(), &[]);
+    shown.log_in(&mut browser, &shown.tokens[0]);
+    let items = "[...document.querySelectorAll('ol.conflicts li')].map((one) => one.textContent)";
+    browser.until(&format!(
+        "{items}.some((one) => / goes first, .* waits at \\(\\d+,\\d+\\).*(zone|priority|there)/.test(one))"
+    ));
+    // The page and the fleet agree while time stands.
+    shown.running.told(&["pause"]);
+    let waits = |robot: &Value| robot["values"]["waits_for_robot"].as_u64().is_some();
+    let status: Value = serde_json::from_str(&shown.running.told(&["status", "--format", "json"])).unwrap();
+    let waiting = status["status"]["components"].as_array().unwrap().iter().filter(|one| waits(one)).count();
+    browser.until(&format!("document.querySelectorAll('ol.conflicts li:not(.past)').length === {waiting}"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 

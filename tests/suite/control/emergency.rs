@@ -22,6 +22,11 @@ fn robots_keep_their_blocks_and_jobs_until_they_are_released() {
     let last = running.until("Robot1", |robot| executed(robot) > executed(&later) + 30);
     assert_eq!(at(&last), at(&later));
     assert!(last["values"]["job"].is_string(), "{last}");
+    // What stops and releases robots otherwise ends no emergency stop.
+    let refused = running.refused(&["set", "Robot1", "stopped=false"]);
+    assert!(refused.contains("component `Robot1`: it is stopped by `saoms estop`"), "{refused}");
+    running.told(&["set", "Robot1", "stopped=true"]);
+    assert_eq!(running.component("Robot1")["values"]["state"], "stopped");
     assert_eq!(running.told(&["release", "Robot1"]), "released: Robot1\n");
     running.until("World", |world| world["values"]["delivered"] == 2);
     let log = running.told(&["logs"]);

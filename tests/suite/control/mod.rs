@@ -3,6 +3,7 @@
 mod alert_kinds;
 mod alerts;
 mod by_hand;
+mod changes;
 mod dashboard;
 mod delivery;
 mod emergency;
@@ -19,6 +20,8 @@ mod status;
 mod time;
 mod top;
 mod topics;
+mod view;
+mod web;
 mod why;
 
 use std::fs;

@@ -1,16 +1,23 @@
 //! Components of libraries whose `status` does what it must not.
 
+use std::fs;
+
 use serde_json::json;
 
 use super::{Running, component, composite};
 use crate::boundary::build::c_library;
+use crate::support::{saoms_in, text};
 
 /// A fleet with a component in C whose `status` does this, and one that does as it should.
+fn fleet(does: &str, more: &str) -> String {
+    let values = format!("<property name=\"at\">status</property><property name=\"does\">{does}</property>{more}");
+    composite(&(component("Bad", "c.Actor", &values) + &component("Good", "c.Actor", "")))
+}
+
 fn running(does: &str, more: &str) -> Running {
     let folder = tempfile::tempdir().unwrap();
     let library = c_library(folder.path(), &["HOLES=.status=status"]);
-    let values = format!("<property name=\"at\">status</property><property name=\"does\">{does}</property>{more}");
-    let fleet = composite(&(component("Bad", "c.Actor", &values) + &component("Good", "c.Actor", "")));
+    let fleet = fleet(does, more);
     // The program has loaded a copy when it can be reached.
     Running::start(&fleet, &["--plugin", library.to_str().unwrap(), "--grace", "300ms"])
 }
@@ -70,9 +77,13 @@ fn a_status_that_hangs_is_shown_and_holds_up_nobody() {
 #[test]
 fn a_status_that_crashes_is_told_with_component_library_and_function() {
     for does in ["segv", "exit"] {
-        let running = running(does, "");
-        let _ = running.ask(&["status"]);
-        let (code, text) = running.end();
+        // It is asked at once, for the figures of the fleet.
+        let folder = tempfile::tempdir().unwrap();
+        let library = c_library(folder.path(), &["HOLES=.status=status"]);
+        fs::write(folder.path().join("fleet.composite"), fleet(does, "")).unwrap();
+        let run = ["run", "fleet.composite", "--control", "socket", "--plugin", library.to_str().unwrap()];
+        let output = saoms_in(folder.path(), &run);
+        let (code, text) = (output.status.code(), text(&output));
         let line = text.lines().find(|line| line.starts_with("error: component `Bad` of library `"));
         let line = line.unwrap_or_else(|| panic!("{does}: {text}"));
         assert!(line.contains("libactor.so` ") && line.contains("`status`"), "{does}: {line}");

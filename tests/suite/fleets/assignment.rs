@@ -330,3 +330,15 @@ fn robots_agree_although_messages_overtake_each_other() {
         delivers(&fleet, seed, 60);
     }
 }
+
+/// A piece far away, and an endless stream of others beside the robot: `optimal` prefers short ways, but for 400 steps at
+/// most.
+#[test]
+fn luggage_far_away_is_not_left_for_ever_to_closer_luggage() {
+    let scenario = "at 1s luggage (20,20) to (20,16); from 1s every 500ms 300 times luggage (1,1) to (2,2)";
+    let run = fleet(22, "assignment=optimal", scenario, &[(0, 0, "")]).run(1, Duration::from_secs(120));
+    let takes = run.log().lines().find(|line| line.contains("Robot1: takes luggage 1 ")).map(str::to_owned);
+    let time = takes.as_ref().and_then(|line| line.strip_prefix('[')?.split_once(" s]")?.0.parse::<f64>().ok());
+    // A step is 200 ms.
+    assert!(time.is_some_and(|time| (20.0..=81.0).contains(&time)), "{takes:?}\n{}", run.log());
+}

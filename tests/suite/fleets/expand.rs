@@ -12,7 +12,7 @@ use crate::support::{root, saoms, saoms_in, shipped};
 
 /// Everything that is reported of a run: the digest of all effects, and the counts of every component.
 fn facts(report: &RunReport) -> (Option<String>, Vec<(String, u64)>) {
-    let components = report.components.iter().map(|one| (one.name.clone(), one.executions));
+    let components = report.components.iter().map(|one| (one.name.to_string(), one.executions));
     (report.trace_hash.clone(), components.collect())
 }
 

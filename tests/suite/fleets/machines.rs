@@ -14,6 +14,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use saoms_api::event::fault::FaultCall;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::schedule::{Order, RunningFleet, Settings};
 use saoms_core::store::Store;
@@ -29,8 +30,12 @@ use crate::support::Program;
 pub(super) const FOLDER: &str = "SAOMS_TEST_MACHINES";
 /// True if the hardware does not know what became of its last action.
 pub(super) const FORGETS: &str = "SAOMS_TEST_MACHINES_FORGET";
+/// A number from which follows when components crash; without it, none does.
+const CRASHES: &str = "SAOMS_TEST_MACHINES_CRASHES";
 /// Number of kills, unless `SAOMS_KILLS` says another one.
 const KILLS: u64 = 15;
+/// Components that crash.
+const CRASHING: [&str; 6] = ["Robot1", "Robot2", "Robot3", "Zone", "Master", "Environment"];
 /// Number of pieces for each kill.
 const PIECES: u64 = 2;
 /// Time within which another piece is brought after the last kill, and time after which no program is left.
@@ -38,11 +43,12 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const LONG: Duration = Duration::from_secs(3600);
 
 /// A fleet with a zone and this number of pieces.
-fn fleet(pieces: u64) -> String {
+fn fleet(pieces: u64, restart: bool) -> String {
+    let restart = if restart { r#"<property name="restart">onFailure</property>"# } else { "" };
     let component = |id: &str, class: &str, more: &str| {
         format!(
             r#"<component name="{id}"><implementation.rust class="{class}"/><property name="ID">{id}</property>
-            <property name="period">10</property>{more}</component>"#
+            <property name="period">10</property>{restart}{more}</component>"#
         )
     };
     let world = r#"<reference name="world" target="Yard"/>"#;
@@ -69,11 +75,15 @@ fn fleet(pieces: u64) -> String {
 struct Questions(Mutex<Vec<(String, String)>>);
 
 impl Observer for Questions {
+    #[expect(clippy::print_stderr, reason = "the program that kills this one counts crashes by these lines")]
     fn event(&self, event: &RunEvent) {
         if let (Some(component), Occurrence::Alert { kind, text: Some(text), .. }) = (&event.component, &event.what)
             && &**kind == "open_action"
         {
             self.0.lock().unwrap().push((component.to_string(), text.clone()));
+        }
+        if let Occurrence::Failed { message, .. } = &event.what {
+            eprintln!("{message}");
         }
     }
 
@@ -88,7 +98,8 @@ fn program_that_is_killed() {
     let Some(folder) = std::env::var_os(FOLDER) else { return };
     let folder = Path::new(&folder);
     let pieces = std::fs::read_to_string(folder.join("pieces")).unwrap().parse().unwrap();
-    let project = Project::new().text("f.composite", fleet(pieces));
+    let seed = std::env::var(CRASHES).ok().and_then(|seed| seed.parse().ok());
+    let project = Project::new().text("f.composite", fleet(pieces, seed.is_some()));
     let compilation = project.compile(&Registry::linked().unwrap());
     let assembly = compilation.output.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics));
     let questions: Arc<Questions> = Arc::default();
@@ -97,7 +108,18 @@ fn program_that_is_killed() {
     let fleet = RunningFleet::start_with(assembly, settings, vec![questions.clone()], |handle| handle.use_store(store))
         .unwrap();
     let until = Instant::now() + LONG;
+    let mut chance = seed.map(|seed| saoms_api::Chance::for_component(seed, "crashes"));
+    // One after the other: who crashes twice before it has executed loses what it heard.
+    let mut crashing = CRASHING.iter().cycle().skip(seed.unwrap_or_default() as usize);
     while Instant::now() < until {
+        if let Some(chance) = &mut chance
+            && chance.below(40) == 0
+        {
+            let who = crashing.next().unwrap();
+            let crash = FaultCall::read(&format!("crash {who} restart {}ms", 1 + chance.below(40))).unwrap();
+            // Once all is done, nothing crashes any more.
+            let _ = fleet.handle().disturb("", &crash, None, "it crashes".to_owned());
+        }
         questions.0.lock().unwrap().retain(|(robot, text)| {
             let Some(done) = Yard::look(&folder.join("noted"), robot, text) else { return true };
             let (component, operation) = (robot.clone(), "settle".to_owned());
@@ -114,16 +136,20 @@ fn program_that_is_killed() {
     }
 }
 
-fn kill_at_random_moments(forgets: bool) {
+fn kill_at_random_moments(forgets: bool, crashes: bool) {
     let folder = tempfile::tempdir().unwrap();
     let kills = std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS);
     std::fs::write(folder.path().join("pieces"), (kills * PIECES).to_string()).unwrap();
     let noted = folder.path().join("noted");
     let mut chance = saoms_api::Chance::for_component(kills, "kills");
+    let mut has_crashed = false;
     for kill in 0..=kills {
         let mut program = Command::new(std::env::current_exe().unwrap());
         program.args(["--exact", "fleets::machines::program_that_is_killed", "--nocapture"]);
         program.env(FOLDER, folder.path()).env(FORGETS, forgets.to_string());
+        if crashes {
+            program.env(CRASHES, kill.to_string());
+        }
         let told = std::fs::File::create(folder.path().join("told")).unwrap();
         let mut program = Program(program.stdout(Stdio::null()).stderr(told).spawn().unwrap());
         let before = yard::deposits(&noted);
@@ -141,19 +167,26 @@ fn kill_at_random_moments(forgets: bool) {
         drop(program);
         let told = std::fs::read_to_string(folder.path().join("told")).unwrap();
         assert_eq!(ended, None, "kill {kill}, {before} deposits: {told}");
+        has_crashed |= told.contains("it crashes by fault injection");
         yard::check(&noted);
     }
     assert_eq!(yard::deposits(&noted), kills * PIECES, "all is delivered, each piece once");
+    assert_eq!(has_crashed, crashes);
     let answers = std::fs::read_to_string(folder.path().join("answers")).unwrap_or_default();
     assert_eq!(answers.contains("true") && answers.contains("false"), forgets, "{answers}");
 }
 
 #[test]
 fn hardware_that_knows_what_became_of_its_actions_does_nothing_twice() {
-    kill_at_random_moments(false);
+    kill_at_random_moments(false, false);
 }
 
 #[test]
 fn hardware_that_a_person_looks_at_does_nothing_twice() {
-    kill_at_random_moments(true);
+    kill_at_random_moments(true, false);
+}
+
+#[test]
+fn hardware_of_robots_that_crash_does_nothing_twice() {
+    kill_at_random_moments(false, true);
 }

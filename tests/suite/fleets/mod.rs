@@ -1,6 +1,7 @@
 //! Fleets in virtual time: what each run has to keep.
 
 mod assignment;
+mod changes;
 mod composites;
 mod dead_ends;
 mod divided;

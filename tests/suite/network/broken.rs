@@ -3,8 +3,9 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::programs::{Programs, Transport, component};
-use super::{MANY, reader, receives_all, senders};
+use super::namespace::Namespace;
+use super::programs::{Programs, Transport, component, on_network};
+use super::{AWAY, MANY, STOPPED, beside_each_other, reader, receives_all, senders, took_little_memory};
 
 #[test]
 fn a_broker_that_is_killed_and_comes_again_costs_no_event() {
@@ -24,30 +25,76 @@ fn broker_comes_again(programs: &Programs) {
     programs.until(&senders, "Sender2        begins");
     sleep(Duration::from_secs(1));
     first.kill();
-    programs.until(&senders, "program `broker` gives no sign of life");
-    sleep(Duration::from_secs(1));
+    sleep(AWAY);
+    assert!(senders.printed().contains("program `broker` gives no sign of life"), "{}", programs.printed());
     let second = programs.broker();
     receives_all(programs, &reader, MANY);
     programs.ends(&senders, 0);
+    took_little_memory(programs);
     programs.end(&second);
 }
 
 #[test]
+fn a_link_that_is_down_for_seconds_costs_no_event() {
+    let trial = |transport| {
+        let Some(namespace) = Namespace::new() else { return };
+        let programs = Programs::within(namespace, transport);
+        let broker = programs.broker();
+        let reader = reader(&programs, "reader", programs.port, &[("count", MANY)]);
+        let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
+        programs.until(&senders, "Sender2        begins");
+        sleep(Duration::from_secs(1));
+        programs.set_link(false);
+        sleep(AWAY);
+        assert!(senders.printed().contains("program `reader` gives no sign of life"), "{}", programs.printed());
+        programs.set_link(true);
+        receives_all(&programs, &reader, MANY);
+        programs.ends(&senders, 0);
+        took_little_memory(&programs);
+        programs.end(&broker);
+    };
+    beside_each_other(&[&|| trial(Transport::Relay), &|| trial(Transport::Zenoh)]);
+}
+
+#[test]
 fn programs_that_stop_for_seconds_miss_nothing_and_nothing_of_them_is_missed() {
-    let programs = Programs::new();
-    let broker = programs.broker();
-    let reader = reader(&programs, "reader", programs.port, &[("count", MANY)]);
-    let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
-    programs.until(&senders, "Sender2        begins");
-    for (stopped, name, other) in [(&reader, "reader", &senders), (&senders, "senders", &reader)] {
+    let trial = |transport, stops_reader: bool| {
+        let programs = Programs::over(transport);
+        let broker = programs.broker();
+        let reader = reader(&programs, "reader", programs.port, &[("count", MANY)]);
+        let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
+        programs.until(&senders, "Sender2        begins");
+        let (stopped, name, other) =
+            if stops_reader { (&reader, "reader", &senders) } else { (&senders, "senders", &reader) };
         stopped.signal(libc::SIGSTOP);
         programs.until(other, &format!("program `{name}` gives no sign of life"));
-        sleep(Duration::from_secs(1));
+        sleep(STOPPED);
         stopped.signal(libc::SIGCONT);
         programs.until(other, &format!("program `{name}` gives signs of life again"));
-    }
+        receives_all(&programs, &reader, MANY);
+        programs.ends(&senders, 0);
+        took_little_memory(&programs);
+        programs.end(&broker);
+    };
+    beside_each_other(&[
+        &|| trial(Transport::Relay, true),
+        &|| trial(Transport::Relay, false),
+        &|| trial(Transport::Zenoh, true),
+        &|| trial(Transport::Zenoh, false),
+    ]);
+}
+
+/// It has room for less than what is sent while it executes once.
+#[test]
+fn a_reader_that_is_slower_than_the_senders_receives_all_in_order() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let slow = [("count", MANY), ("senders", "2"), ("queue", "1500")];
+    let reader = programs.tasks("reader", programs.port, &[("Reader", "numbers.Reader", &slow)]);
+    let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
     receives_all(&programs, &reader, MANY);
     programs.ends(&senders, 0);
+    took_little_memory(&programs);
     programs.end(&broker);
 }
 
@@ -58,12 +105,18 @@ fn others_go_on_without_a_reader_that_is_killed() {
     let stays = reader(&programs, "stays", programs.port, &[("count", "4000")]);
     let dies = reader(&programs, "dies", programs.port, &[("count", "4000")]);
     let given = [("count", "4000"), ("each", "200"), ("readers", "2")];
-    let senders = senders(&programs, programs.port, &given);
+    let tasks = [("Sender1", "numbers.Sender", &given[..]), ("Sender2", "numbers.Sender", &given)];
+    let tasks = on_network(&programs.url(programs.port), &[], &tasks);
+    let senders = programs.start_with("senders", &tasks, |run| {
+        run.args(["--linger", "3s"]);
+    });
     programs.until(&senders, "Sender2        begins");
     sleep(Duration::from_millis(500));
     dies.kill();
     receives_all(&programs, &stays, "4000");
-    programs.ends(&senders, 0);
+    // One that wanted them has not received all.
+    programs.ends(&senders, 1);
+    assert!(senders.printed().contains("program `dies` has not received"), "{}", senders.printed());
     programs.end(&broker);
 }
 

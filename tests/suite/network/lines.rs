@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use super::programs::Programs;
 use super::proxy::{Line, Proxy};
-use super::{MANY, reader, receives_all, senders};
+use super::{MANY, beside_each_other, reader, receives_all, senders, took_little_memory};
 
 /// All events arrive over the proxy, to which this happens while they are sent: with the reader behind it, and with the
 /// senders. Some program says this then.
 #[track_caller]
-fn all_arrive(line: Line, count: &str, each: &str, happens: impl Fn(&Proxy), said: &str) {
-    for is_reader_behind in [true, false] {
+fn all_arrive(line: Line, count: &str, each: &str, happens: impl Fn(&Proxy) + Sync, said: &str) {
+    let trial = |is_reader_behind: bool| {
         let programs = Programs::new();
         let broker = programs.broker();
         programs.until(&broker, "listens at");
@@ -24,18 +24,22 @@ fn all_arrive(line: Line, count: &str, each: &str, happens: impl Fn(&Proxy), sai
         receives_all(&programs, &reader, count);
         programs.ends(&senders, 0);
         programs.end(&broker);
+        took_little_memory(&programs);
         assert!(programs.printed().contains(said), "{}", programs.printed());
-    }
+    };
+    beside_each_other(&[&|| trial(true), &|| trial(false)]);
 }
 
 #[test]
 fn events_arrive_over_a_slow_line() {
     let line = Line { delay: Duration::from_millis(100), few: 0 };
-    all_arrive(line, "3000", "200", |_| {}, "");
+    all_arrive(line, MANY, "1000", |_| {}, "");
 }
 
 #[test]
 fn events_arrive_in_bits() {
+    let line = Line { delay: Duration::ZERO, few: 500 };
+    all_arrive(line, MANY, "1000", |_| {}, "");
     let line = Line { delay: Duration::ZERO, few: 7 };
     all_arrive(line, "60", "3", |_| {}, "");
 }

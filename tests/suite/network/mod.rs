@@ -8,8 +8,11 @@ mod errors;
 mod foreign;
 mod hardware;
 mod leases;
+mod library;
 mod lines;
 mod links;
+mod lost;
+mod namespace;
 mod nodes;
 mod operators;
 mod passwords;
@@ -18,17 +21,26 @@ mod places;
 mod programs;
 mod proxy;
 mod python;
+mod routers;
 mod secrets;
+mod sockets;
 mod state;
 mod tls;
 mod together;
+mod twice;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use programs::{Given, Program, Programs};
 
 /// Number of events of each sender over an outage, in tenths of seconds with a thousand each.
 const MANY: &str = "100000";
+/// The most memory that a program takes for them: they are kept while others cannot receive them.
+const MOST_MEMORY: u64 = 500 << 20;
+/// Time for which brokers and links are away, and for which programs are stopped.
+const AWAY: Duration = Duration::from_secs(10);
+const STOPPED: Duration = Duration::from_secs(20);
 
 /// Two senders of numbered events in one program, at this port.
 fn senders(programs: &Programs, port: u16, given: Given<'_>) -> Arc<Program> {
@@ -49,4 +61,16 @@ fn receives_all(programs: &Programs, reader: &Program, count: &str) {
         programs.until(reader, &format!("has received 1 to {count} of {sender}"));
     }
     programs.ends(reader, 0);
+}
+
+/// Runs trials beside each other: what takes long in them is waiting.
+fn beside_each_other(trials: &[&(dyn Fn() + Sync)]) {
+    std::thread::scope(|scope| trials.iter().for_each(|trial| drop(scope.spawn(trial))));
+}
+
+/// Holds programs to the memory that they may take.
+#[track_caller]
+fn took_little_memory(programs: &Programs) {
+    let most = programs.most_memory();
+    assert!((1..MOST_MEMORY).contains(&most), "{most} bytes");
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use super::programs::{Program, Programs, component, free_port};
+use super::programs::{Program, Programs, Transport, component, free_port};
 use crate::support::{root, saoms, stdout, text};
 
 /// Starts a node of a composite.
@@ -23,7 +23,16 @@ fn report(programs: &Programs, node: &str) -> Value {
 
 #[test]
 fn the_airport_runs_in_programs_by_its_nodes() {
-    let programs = Programs::new();
+    airport_by_nodes(&Programs::new(), "relay");
+}
+
+#[test]
+fn the_airport_runs_in_programs_by_its_nodes_over_zenoh() {
+    airport_by_nodes(&Programs::over(Transport::Zenoh), "");
+}
+
+#[track_caller]
+fn airport_by_nodes(programs: &Programs, transport: &str) {
     let airport = fs::read_to_string(root().join("composites/airport-nodes.composite")).unwrap();
     // Events that another node takes, from a scenario and from outside.
     let luggage = "at 500ms luggage";
@@ -31,16 +40,17 @@ fn the_airport_runs_in_programs_by_its_nodes() {
     programs.write("airport.composite", &airport.replace(luggage, &drain));
     programs.write("events.txt", "at 3s drain robot=2 percent=5.0\n");
     let (port, url) = (format!("port={}", programs.port), format!("url={}", programs.url(programs.port)));
-    let given = ["--set", "host=127.0.0.1", "--set", &port, "--set", &url, "--set", "transport=relay"];
+    let transport = format!("transport={transport}");
+    let given = ["--set", "host=127.0.0.1", "--set", &port, "--set", &url, "--set", &transport];
     let nodes = ["floor", "traffic", "control"];
     let all = nodes.map(|node| {
         let events = if node == "control" { &["--events", "events.txt"][..] } else { &[] };
-        start(&programs, "airport.composite", node, &[&given, events].concat())
+        start(programs, "airport.composite", node, &[&given, events].concat())
     });
     for program in &all {
         programs.ends(program, 0);
     }
-    let floor = report(&programs, "floor");
+    let floor = report(programs, "floor");
     // A robot may not have begun by then, where the machine is slow.
     let faults = [&floor["faults"]["applied"]["drain"], &floor["faults"]["ignored"]];
     let faults: u64 = faults.iter().filter_map(|count| count.as_u64()).sum();
@@ -57,12 +67,12 @@ fn the_airport_runs_in_programs_by_its_nodes() {
         merged["nodes"].as_array().unwrap().iter().map(|one| one["node"].as_str().unwrap()).collect();
     assert_eq!(nodes, ["floor", "control", "traffic"]);
     let joined = merged["journal"]["entries"].as_array().unwrap().len();
-    let each = nodes.iter().map(|node| report(&programs, node)["journal"]["entries"].as_array().unwrap().len());
+    let each = nodes.iter().map(|node| report(programs, node)["journal"]["entries"].as_array().unwrap().len());
     assert_eq!(joined, each.sum::<usize>());
     // What a robot did follows from what its program was told by another one.
     let collected = floor["journal"]["entries"].as_array().unwrap().iter();
     let mut collected = collected.filter(|entry| entry["text"].as_str().unwrap().starts_with("takes luggage"));
-    let taken = collected.next().expect("a robot takes luggage");
+    let taken = collected.next().unwrap();
     let robot = taken["component"].as_str().unwrap();
     let reports = files.map(|file| ["--report", file]).concat();
     let why = stdout(&programs.saoms(&[&["why", robot], &reports[..]].concat()));
@@ -103,6 +113,20 @@ fn the_airport_runs_in_four_programs() {
     for luggage in 1..=9 {
         assert_eq!(printed.matches(&format!("deposited luggage {luggage} at")).count(), 1, "{printed}");
     }
+}
+
+#[test]
+fn what_no_node_of_a_fleet_has_is_an_error_that_names_the_nodes() {
+    let programs = Programs::new();
+    write_fleet(&programs, "at 2s luggage random to (9,10)", &[("gate-a", "500")]);
+    let fleet = programs.read("fleet.composite");
+    let (before, master) = fleet.split_once("<component name=\"Master\">").unwrap();
+    let after = master.split_once("</component>").unwrap().1;
+    programs.write("fleet.composite", &format!("{before}{after}"));
+    let said = text(&programs.saoms(&["check", "fleet.composite"]));
+    let nodes = "none of the nodes of this fleet has it: `control`, `gate-a`, `traffic`";
+    assert!(said.contains("error[S5001]") && said.contains("warning[S5008]"), "{said}");
+    assert_eq!(said.matches(nodes).count(), 2, "{said}");
 }
 
 /// Writes a fleet with a broker, a scenario and a master in `control`, a zone in `traffic`, and robots: each with its

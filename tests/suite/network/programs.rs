@@ -5,12 +5,14 @@ use std::io::{BufRead, BufReader, Read};
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use super::namespace::Namespace;
 use crate::boundary::build;
 use crate::plugins::library;
 use crate::support::{command, saoms_in};
@@ -39,6 +41,8 @@ pub(super) struct Programs {
     transport: Transport,
     /// The port of the broker.
     pub(super) port: u16,
+    /// Where they run that have a network of their own.
+    namespace: Option<Namespace>,
     started: Mutex<Vec<Arc<Program>>>,
 }
 
@@ -56,6 +60,8 @@ pub(super) struct Program {
     pid: i32,
     /// What it has printed.
     printed: Arc<Mutex<String>>,
+    /// The most memory that it was seen with, in bytes.
+    memory: AtomicU64,
 }
 
 /// A port on which nobody listens.
@@ -76,7 +82,25 @@ impl Programs {
     }
 
     pub(super) fn over(transport: Transport) -> Programs {
-        Programs { folder: tempfile::tempdir().unwrap(), transport, port: free_port(), started: Mutex::default() }
+        let folder = tempfile::tempdir().unwrap();
+        Programs { folder, transport, port: free_port(), namespace: None, started: Mutex::default() }
+    }
+
+    /// Programs on a network of their own, whose link can be taken down.
+    pub(super) fn within(namespace: Namespace, transport: Transport) -> Programs {
+        let mut programs = Programs::over(transport);
+        programs.namespace = Some(namespace);
+        programs
+    }
+
+    /// Takes the link of their own network down, or up again.
+    pub(super) fn set_link(&self, is_up: bool) {
+        self.namespace.as_ref().unwrap().set_link(is_up);
+    }
+
+    /// The most memory that a program was seen with, in bytes.
+    pub(super) fn most_memory(&self) -> u64 {
+        self.started.lock().unwrap().iter().map(|one| one.memory.load(Ordering::SeqCst)).max().unwrap_or_default()
     }
 
     /// The folder of the composites.
@@ -153,6 +177,10 @@ impl Programs {
             run.arg("--plugin").arg(library);
         }
         configure(&mut run);
+        let run = match &self.namespace {
+            Some(namespace) => namespace.inside(&run),
+            None => run,
+        };
         self.watch(name, run)
     }
 
@@ -175,7 +203,8 @@ impl Programs {
             });
         }
         let pid = i32::try_from(child.id()).unwrap();
-        let program = Arc::new(Program { name: name.to_owned(), child: Mutex::new(child), pid, printed });
+        let (name, memory) = (name.to_owned(), AtomicU64::new(0));
+        let program = Arc::new(Program { name, child: Mutex::new(child), pid, printed, memory });
         self.started.lock().unwrap().push(Arc::clone(&program));
         program
     }
@@ -227,6 +256,7 @@ impl Programs {
         let begin = Instant::now();
         while !is() {
             assert!(begin.elapsed() < LONGEST, "{what}\n{}", self.printed());
+            self.started.lock().unwrap().iter().for_each(|program| program.note_memory());
             sleep(Duration::from_millis(10));
         }
     }
@@ -257,6 +287,14 @@ impl Program {
     /// Its number in the system.
     pub(super) fn pid(&self) -> i32 {
         self.pid
+    }
+
+    /// Notes how much memory it has had at most.
+    fn note_memory(&self) {
+        // It may have ended.
+        let Ok(status) = fs::read_to_string(format!("/proc/{}/status", self.pid)) else { return };
+        let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.strip_suffix("kB")?.trim().parse().ok());
+        self.memory.fetch_max(most.unwrap_or(0_u64) << 10, Ordering::SeqCst);
     }
 
     fn has_ended(&self) -> bool {

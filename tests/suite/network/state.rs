@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use super::operators::accepted;
 use super::programs::{Given, Program, Programs, on_network};
-use super::{reader, receives_all};
+use super::{MANY, reader, receives_all, took_little_memory};
 
-const COUNT: &str = "2400";
-const GIVEN: Given<'_> = &[("count", COUNT), ("each", "40")];
+const COUNT: &str = MANY;
+const GIVEN: Given<'_> = &[("count", COUNT), ("each", "1000")];
 
 /// Two senders in one program with a state folder.
 fn senders(programs: &Programs) -> Arc<Program> {
@@ -40,6 +40,7 @@ fn what_killed_senders_had_accepted_arrives_once_and_in_order() {
     let third = senders(&programs);
     receives_all(&programs, &reader, COUNT);
     programs.ends(&third, 0);
+    took_little_memory(&programs);
     let printed = reader.printed();
     assert!(printed.contains("goes on from its state"), "{printed}");
     assert!(!printed.contains("has begun anew"), "{printed}");
@@ -51,7 +52,7 @@ fn a_killed_reader_with_a_state_folder_misses_nothing() {
     let programs = Programs::new();
     let broker = programs.broker();
     let start = || {
-        let given = [("senders", "2"), ("queue", "100000"), ("count", COUNT)];
+        let given = [("senders", "2"), ("queue", "200000"), ("count", COUNT)];
         let components = on_network(&programs.url(programs.port), &[], &[("R-Reader", "numbers.Reader", &given)]);
         programs.start_with("R", &components, |run| {
             run.args(["--state", "reader-state"]);
@@ -68,6 +69,7 @@ fn a_killed_reader_with_a_state_folder_misses_nothing() {
     let third = start();
     receives_all(&programs, &third, COUNT);
     programs.ends(&senders, 0);
+    took_little_memory(&programs);
     programs.end(&broker);
 }
 

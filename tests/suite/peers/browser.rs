@@ -20,6 +20,9 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const LOOKS: usize = 1200;
 const BETWEEN: Duration = Duration::from_millis(50);
 
+/// What the browser answers if the page that was asked has been left meanwhile.
+const LEFT: [&str; 2] = ["Inspected target navigated or closed", "Execution context was destroyed"];
+
 /// Errors of a page that are told.
 const MOST_ERRORS: usize = 3;
 
@@ -71,13 +74,57 @@ impl Browser {
         for domain in ["Page", "Runtime", "Log"] {
             browser.call(&format!("{domain}.enable"), json!({}));
         }
-        let screen = json!({"width": 1280, "height": 900, "deviceScaleFactor": 1, "mobile": false});
-        browser.call("Emulation.setDeviceMetricsOverride", screen);
+        browser.be_screen(1280, 900);
         Some(browser)
+    }
+
+    /// Makes the screen so large, in pixels. A narrow one is that of a phone.
+    pub(crate) fn be_screen(&mut self, width: u32, height: u32) {
+        let screen = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500});
+        self.call("Emulation.setDeviceMetricsOverride", screen);
+    }
+
+    /// Sets the colours that the system prefers: `light` or `dark`.
+    pub(crate) fn prefer(&mut self, scheme: &str) {
+        let features = json!({"features": [{"name": "prefers-color-scheme", "value": scheme}]});
+        self.call("Emulation.setEmulatedMedia", features);
+    }
+
+    /// Presses a key: `Tab`, `Enter`, or a letter.
+    pub(crate) fn press(&mut self, key: &str) {
+        let (code, text) = match key {
+            "Tab" => (9, ""),
+            "Enter" => (13, "\r"),
+            letter => (letter.bytes().next().map_or(0, |byte| u32::from(byte.to_ascii_uppercase())), letter),
+        };
+        for kind in ["keyDown", "keyUp"] {
+            let mut event = json!({"type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code});
+            if kind == "keyDown" && !text.is_empty() {
+                event["text"] = json!(text);
+            }
+            self.call("Input.dispatchKeyEvent", event);
+        }
+    }
+
+    /// Presses Tab until this is true of the element with the focus, `focus`.
+    #[track_caller]
+    pub(crate) fn tab_to(&mut self, wanted: &str) {
+        for _ in 0..200 {
+            self.press("Tab");
+            if self.value(&format!("((focus) => {wanted})(document.activeElement)")) == true {
+                return;
+            }
+        }
+        panic!("Tab never comes to an element of which `{wanted}` is true");
     }
 
     /// Carries out a command of the protocol.
     fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.try_call(method, parameters).unwrap_or_else(|error| panic!("{method}: {error}"))
+    }
+
+    /// The same; the error is that of the browser.
+    fn try_call(&mut self, method: &str, parameters: Value) -> Result<Value, Value> {
         self.number += 1;
         let mut command = json!({"id": self.number, "method": method, "params": parameters});
         if let Some(session) = &self.session {
@@ -88,8 +135,7 @@ impl Browser {
         loop {
             let mut told = self.from.recv_timeout(PATIENCE).unwrap_or_else(|error| panic!("{method}: {error}"));
             if told["id"] == self.number {
-                assert!(told["error"].is_null(), "{method}: {}", told["error"]);
-                return told["result"].take();
+                return if told["error"].is_null() { Ok(told["result"].take()) } else { Err(told["error"].take()) };
             }
             self.note(&told);
         }
@@ -117,7 +163,11 @@ impl Browser {
     /// The value of an expression in the page, which may be a promise; `null` while the page changes.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
         let asked = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
-        self.call("Runtime.evaluate", asked)["result"]["value"].take()
+        match self.try_call("Runtime.evaluate", asked) {
+            Ok(mut told) => told["result"]["value"].take(),
+            Err(error) if LEFT.iter().any(|left| error.to_string().contains(left)) => Value::Null,
+            Err(error) => panic!("Runtime.evaluate: {error}"),
+        }
     }
 
     /// Waits until an expression is true in the page.

@@ -4,6 +4,7 @@
 pub(crate) mod browser;
 mod messages;
 mod rosbags;
+pub(crate) mod web;
 
 use std::fs;
 use std::path::{Path, PathBuf};

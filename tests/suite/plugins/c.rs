@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use crate::support::{self, root, text};
 
 /// The files of the robot.
-const SOURCES: [&str; 3] = ["robot.c", "traffic.c", "zones.c"];
+const SOURCES: [&str; 4] = ["robot.c", "traffic.c", "zones.c", "areas.c"];
 
 /// The built robot, in a folder that goes with this process.
 static LIBRARY: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {

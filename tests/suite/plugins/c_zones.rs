@@ -4,7 +4,7 @@ use std::fs;
 
 use saoms_components::grid::Block;
 use saoms_components::messages::{
-    GRANT, GRANT_REQUEST, Grant, GrantRequest, POSITION, Standing, Step, TERRITORY, Territory, link,
+    GRANT, GRANT_REQUEST, Grant, GrantRequest, POSITION, Standing, Step, TERRITORY, Territory, address, link,
 };
 use saoms_testkit::Bench;
 
@@ -31,7 +31,7 @@ fn grant(term: u64, request: &GrantRequest, steps: &[Step]) -> Grant {
         robot: ROBOT,
         incarnation: request.incarnation,
         heard: request.number,
-        block: request.block,
+        address: address(ROBOT),
         steps: steps.to_vec(),
         ..Grant::default()
     }
@@ -83,6 +83,44 @@ fn it_enters_what_is_granted_and_says_what_it_holds() {
     assert_eq!((released.held, released.received), (vec![step(2, 4, 0)], 3));
     patrol.shutdown().unwrap();
     assert_eq!(patrol.sent(&GRANT_REQUEST).pop().map(|request| request.standing), Some(Standing::Lost));
+}
+
+#[test]
+fn it_tells_the_zones_that_its_blocks_have_where_borders_change() {
+    let values = [("ID", "Patrol"), ("number", "9"), ("left", "2"), ("right", "6"), ("bottom", "2")];
+    let mut patrol = Bench::of_library(library(), "patrol.Robot", &values).unwrap();
+    patrol.start().unwrap();
+    patrol.deliver(&TERRITORY, territory(1));
+    let first = asks(&mut patrol).unwrap();
+    patrol.deliver(&GRANT, grant(1, &first, &[step(1, 3, 0), step(2, 4, 0)]));
+    let last = asks(&mut patrol).unwrap();
+    assert_eq!((last.held.clone(), last.received), (vec![step(1, 3, 0), step(2, 4, 0)], 2));
+    // The block to which it drives is that of another zone now.
+    let east = Territory { zone: 2, term: 5, corner: Block::new(4, 0), width: 7, height: 11 };
+    patrol.deliver(&TERRITORY, east.clone());
+    patrol.deliver(&GRANT, grant(1, &last, &[step(3, 5, 0)]));
+    let told = asks(&mut patrol).unwrap();
+    assert_eq!((told.zone, told.term, told.held, told.received), (2, 5, vec![step(2, 4, 0)], 2));
+    assert_eq!(patrol.sent(&GRANT_REQUEST).len(), 1, "the zone that granted it that is none any more");
+    // What that said before comes late.
+    patrol.deliver(&TERRITORY, territory(1));
+    patrol.deliver(&GRANT, grant(1, &last, &[step(3, 5, 0)]));
+    patrol.execute().unwrap();
+    assert!(patrol.sent(&GRANT_REQUEST).iter().all(|request| request.zone == 2 && request.received == 2));
+    let west = Territory { width: 4, ..territory(6) };
+    patrol.deliver(&TERRITORY, west);
+    patrol.execute().unwrap();
+    let zones = patrol.sent(&GRANT_REQUEST);
+    let zones: Vec<_> = zones.iter().filter(|one| one.zone == 1).map(|one| (one.term, one.held.len())).collect();
+    assert_eq!(zones, [(6, 0)], "it says to it that it holds nothing of its blocks");
+    // The border moves back, and the zone goes on with its numbers.
+    patrol.deliver(&TERRITORY, territory(9));
+    let all = asks(&mut patrol).unwrap();
+    assert_eq!((all.zone, all.term, all.held.clone(), all.received), (1, 9, vec![step(2, 4, 0)], 2));
+    patrol.deliver(&GRANT, grant(9, &all, &[step(3, 5, 0)]));
+    patrol.execute().unwrap();
+    assert_eq!(patrol.sent(&POSITION).last().map(|position| position.block), Some(Block::new(5, 0)));
+    patrol.shutdown().unwrap();
 }
 
 /// The fleet of the plugin with a zone and two robots that ship.

@@ -21,8 +21,8 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "crate::check::",
         &[
             "judged", "options", "report", "hidden", "values", "fleet", "parameters", "unfolding", "classes",
-            "properties", "loops", "component", "tasks", "contracts", "wiring", "placement", "rules", "run_settings",
-            "assemble", "occurrences", "wanted_tables",
+            "properties", "loops", "component", "tasks", "contracts", "wiring", "web", "placement", "rules",
+            "run_settings", "assemble", "occurrences", "wanted_tables",
         ],
     ),
     (
@@ -30,7 +30,7 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "crate::",
         &[
             "hash", "plugin", "assemble", "bus", "journal", "adaptation", "report", "status", "observe", "fault",
-            "store", "network", "schedule",
+            "store", "network", "web", "schedule",
         ],
     ),
 ];

@@ -1,7 +1,10 @@
-use saoms_api::{Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, info, record};
+use saoms_api::{
+    Cause, Context, Failure, Field, Header, Loop, LoopClass, Record, Recordable, Saved, Subscription, info, record,
+};
 
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::RobotKnowledge;
+use crate::robot::memory::lasting::lasting;
 
 /// Wakes the robot, or sends it to charge, on request (listing 6.4).
 #[derive(Debug, Default, LoopClass)]
@@ -16,7 +19,20 @@ pub struct ClassicRobotState {
     states: Subscription<RobotState>,
     /// Commands that arrived for this execution. They are judged once the robot has heard which robots are active.
     arrived: Vec<(Header, RobotState)>,
+    /// From when it is to leave the fleet until it has gone back to work, whether it charged, or was to charge, before.
+    was_away: Option<bool>,
+    /// The newest command since then.
+    called: Option<Called>,
 }
+
+/// A command to this robot, and its cause.
+#[derive(Clone, Debug, Field)]
+struct Called {
+    state: RobotState,
+    cause: Cause,
+}
+
+lasting! { ClassicRobotState as RobotStateMemory { was_away: Option<bool>, called: Option<Called> } }
 
 /// Commands to a robot.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +41,10 @@ pub enum ClassicRobotSymptom {
     Awake(u32),
     /// Go to charge.
     Asleep,
+    /// Leave the fleet.
+    Leaves,
+    /// Stay in the fleet after all.
+    Stays,
 }
 
 /// Reaction to a command.
@@ -44,6 +64,8 @@ impl Recordable for ClassicRobotSymptom {
                 record!(woken_as_substitute: "is woken to stand in for robot {robot}", robot)
             }
             ClassicRobotSymptom::Asleep => record!(sent_to_charge: "is sent to charge"),
+            ClassicRobotSymptom::Leaves => record!(leaves_fleet: "is to leave the fleet"),
+            ClassicRobotSymptom::Stays => record!(stays_in_fleet: "does not leave the fleet"),
         }
     }
 }
@@ -78,12 +100,31 @@ impl Loop for ClassicRobotState {
         let mut newest = None;
         for (header, state) in self.arrived.drain(..) {
             if knowledge.accepts(&state, header, context) && state.robot == knowledge.number {
-                newest = Some((state, header.cause));
+                newest = Some(Called { state, cause: header.cause });
             }
         }
-        let Some((state, cause)) = newest else { return Ok(None) };
-        context.because(cause);
         let variables = &knowledge.variables;
+        let is_on_leave = variables.in_charge || variables.ready_to_go_under_charge;
+        if knowledge.leaving {
+            self.called = newest.or(self.called.take());
+            self.was_away.get_or_insert(is_on_leave);
+            return Ok((!is_on_leave).then_some(ClassicRobotSymptom::Leaves));
+        }
+        let newest = newest.or(self.called.take());
+        if let Some(was_away) = self.was_away {
+            let wakes = newest.as_ref().map_or(!was_away, |called| called.state.awake);
+            if wakes && is_on_leave && !variables.in_charge {
+                // It wakes where it charges.
+                self.called = newest;
+                return Ok(None);
+            }
+            self.was_away = None;
+            if wakes && is_on_leave && newest.is_none() {
+                return Ok(Some(ClassicRobotSymptom::Stays));
+            }
+        }
+        let Some(Called { state, cause }) = newest else { return Ok(None) };
+        context.because(cause);
         Ok(match state.awake {
             true => variables.in_charge.then_some(ClassicRobotSymptom::Awake(state.emulate)),
             false => {
@@ -100,7 +141,8 @@ impl Loop for ClassicRobotState {
     ) -> Result<Option<ClassicRobotDecision>, Failure> {
         Ok(Some(match symptom {
             ClassicRobotSymptom::Awake(emulate) => ClassicRobotDecision::Wake(emulate),
-            ClassicRobotSymptom::Asleep => ClassicRobotDecision::Charge,
+            ClassicRobotSymptom::Stays => ClassicRobotDecision::Wake(0),
+            ClassicRobotSymptom::Asleep | ClassicRobotSymptom::Leaves => ClassicRobotDecision::Charge,
         }))
     }
 
@@ -126,5 +168,13 @@ impl Loop for ClassicRobotState {
             }
         }
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }

@@ -28,6 +28,7 @@ struct Memory {
     next: Block,
     wanted: Option<Block>,
     charge_block: Block,
+    given_charger: Block,
     battery: BatteryMemory,
     strain: Strain,
     reserve: u32,
@@ -92,6 +93,7 @@ impl RobotKnowledge {
             next: self.next,
             wanted: self.wanted,
             charge_block: self.charge_block,
+            given_charger: self.given_charger,
             battery: BatteryMemory {
                 percent: self.battery.percent(),
                 shown: self.charge,
@@ -142,7 +144,10 @@ impl RobotKnowledge {
         let TallyMemory { delivered, blocks, waited_ns } = memory.tally;
         self.tally = Tally { delivered, blocks, waited: Duration::from_nanos(waited_ns) };
         (self.block, self.next, self.wanted) = (memory.block, memory.next, memory.wanted);
-        self.charge_block = memory.charge_block;
+        self.has_new_charger = memory.given_charger != self.given_charger;
+        if !self.has_new_charger {
+            self.charge_block = memory.charge_block;
+        }
         self.strain = memory.strain;
         self.battery.set_percent(memory.battery.percent);
         (self.charge, self.charging) = (memory.battery.shown, memory.battery.charging);

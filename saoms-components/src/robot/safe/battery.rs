@@ -217,6 +217,7 @@ impl Loop for SafeBattery {
         if knowledge.hardware.has_entered() {
             self.look_at_battery(knowledge, context);
             knowledge.energy.gives_nothing = !self.gain.gives(knowledge.charge_block, context.now());
+            knowledge.energy.borrows = self.own.is_some();
         }
         Ok(())
     }
@@ -226,6 +227,9 @@ impl Loop for SafeBattery {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<SafeBatterySymptom>, Failure> {
+        if std::mem::take(&mut knowledge.has_new_charger) {
+            self.own = None;
+        }
         if knowledge.trouble.is_some() {
             return Ok(None);
         }

@@ -13,7 +13,7 @@ use super::pace::Pace;
 
 /// Number of moves that are reserved for waiting and making way on the way to the charger, if the battery allows it.
 /// With less than 12, robots in the simulated fleets of the tests sometimes ran out of battery.
-pub(in crate::robot) const RESERVE: u32 = 14;
+pub(crate) const RESERVE: u32 = 14;
 
 /// Number of late answers of zones for which energy is reserved.
 const LATE_ANSWERS: u32 = 2;
@@ -51,11 +51,15 @@ pub(crate) struct Energy {
     pub(super) lacks: u32,
     /// True if its charger gave nothing not long ago.
     pub(super) gives_nothing: bool,
+    /// True if it charges at another charger than its own for now.
+    pub(super) borrows: bool,
     /// How it gets on with the way to its charger.
     homeward: Homeward,
     /// Number of executions by which its ways to the charger took longer than without other robots: the longest one,
     /// and less with each further way.
     delay: u32,
+    /// Number of executions of the way to its charger without other robots.
+    home_alone: u32,
 }
 
 /// The way of a robot that has to charge.
@@ -164,6 +168,7 @@ impl RobotKnowledge {
         self.lasts = self.executions_left();
         let way = self.routes.between(self.next, self.charge_block);
         self.way_home = self.home_along(way);
+        self.energy.home_alone = self.energy.pace.job_alone(way, 0);
         if self.must_charge && !self.is_at_charger() {
             let alone = self.energy.pace.job_alone(way, 0);
             self.energy.homeward.note(self.charge_block, way, alone);
@@ -336,6 +341,9 @@ impl RobotKnowledge {
         let back = self.routes.between(next, self.charge_block);
         let first = self.energy.pace.job(way, 1).saturating_add(self.energy.pace.job(back, 0));
         let spare = self.executions_left().saturating_sub(first);
+        if self.energy.set_out_for != Some(job.luggage) {
+            self.energy.returns = 0;
+        }
         // A robot that returned in vain uses a smaller reserve the next time.
         let reserve = (spare / 4 * 3).min(self.usual_reserve());
         let reserve = reserve.checked_shr(self.energy.returns).unwrap_or(0);
@@ -382,7 +390,19 @@ impl RobotKnowledge {
 
     /// True if half of the reserve for the way to its charger is used up.
     pub(super) fn is_exhausted(&self) -> bool {
-        self.lasts <= self.way_home.saturating_add(self.usual_reserve() / 2)
+        self.urgency_of_charging() >= Urgency::Exhausted
+    }
+
+    /// How urgent the way to its charger is: a robot that can still wait lets others go first that cannot.
+    pub(super) fn urgency_of_charging(&self) -> Urgency {
+        let half = self.usual_reserve() / 2;
+        if self.lasts <= self.energy.home_alone.saturating_add(half) {
+            Urgency::NearlyEmpty
+        } else if self.lasts <= self.way_home.saturating_add(half) {
+            Urgency::Exhausted
+        } else {
+            Urgency::Energy
+        }
     }
 
     pub(super) fn usual_reserve(&self) -> u32 {

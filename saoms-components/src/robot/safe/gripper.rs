@@ -197,7 +197,8 @@ impl RobotKnowledge {
             let is_own = other.priority.robot == other.robot;
             other.wanted == at || is_own && place.is_ok_and(|place| chargers[place].1 == at)
         };
-        let waits = |other: &&Position| Urgency::Exhausted.is_of(other.priority) && other.block.distance(at) == 1;
+        let waits =
+            |other: &&Position| Urgency::Exhausted.is_at_most_that_of(other.priority) && other.block.distance(at) == 1;
         self.energy.handles_long() && self.traffic.near().iter().filter(waits).any(comes_here)
     }
 }

@@ -24,20 +24,22 @@ pub(super) enum Urgency {
     Job,
     /// Reaching the charger in time.
     Energy,
-    /// Reaching the charger with a battery that hardly lasts.
+    /// Reaching the charger, with half of the reserve used up if others are in the way as usual.
     Exhausted,
+    /// Reaching the charger, with half of the reserve used up even if nobody is in the way any more.
+    NearlyEmpty,
 }
 
 impl Urgency {
     /// True if a robot has this priority because of such a way or a more urgent one, and not because it makes way for
     /// another one.
     pub(super) fn is_at_most(self, robot: u32, priority: Priority) -> bool {
-        priority.robot == robot && (self as u64..=Urgency::Exhausted as u64).contains(&(priority.rank >> AGE_BITS))
+        priority.robot == robot && self.is_at_most_that_of(priority)
     }
 
-    /// True if a robot has this priority because of such a way.
-    pub(super) fn is_of(self, priority: Priority) -> bool {
-        priority.rank >> AGE_BITS == self as u64
+    /// True if a robot, or one that it makes way for, has this priority because of such a way or a more urgent one.
+    pub(super) fn is_at_most_that_of(self, priority: Priority) -> bool {
+        (self as u64..=Urgency::NearlyEmpty as u64).contains(&(priority.rank >> AGE_BITS))
     }
 }
 
@@ -75,9 +77,10 @@ impl RobotKnowledge {
     /// The goal and its urgency, as the knowledge has them now.
     pub(super) fn leg_now(&self) -> (Option<Block>, Urgency) {
         let (goal, urgency) = if self.must_charge {
-            // Once for a way: robots that swap their priorities would push each other back and forth.
-            let is_exhausted = self.leg.urgency == Urgency::Exhausted || self.is_exhausted();
-            (Some(self.charge_block), if is_exhausted { Urgency::Exhausted } else { Urgency::Energy })
+            let urgency = self.urgency_of_charging();
+            // It does not fall on the way: robots that swap their priorities would push each other back and forth.
+            let is_same_way = self.leg.goal == Some(self.charge_block);
+            (Some(self.charge_block), if is_same_way { self.leg.urgency.max(urgency) } else { urgency })
         } else if let Some(destination) = self.destination() {
             (Some(destination), Urgency::Job)
         } else if self.variables.transporter || self.offers_help || self.lingers > 0 {

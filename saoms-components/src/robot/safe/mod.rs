@@ -37,7 +37,7 @@ pub use path_follower::SafePathFollower;
 pub use robot_list::SafeRobotList;
 pub use robot_state::SafeRobotState;
 
-pub(crate) use energy::is_within;
-pub(super) use energy::{Energy, RESERVE};
+pub(super) use energy::Energy;
+pub(crate) use energy::{RESERVE, is_within};
 pub(super) use leg::Leg;
 pub(super) use traffic::{Traffic, TrafficMemory};

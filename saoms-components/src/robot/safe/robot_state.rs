@@ -33,6 +33,8 @@ pub struct SafeRobotState {
     called: Option<Called>,
     /// Cause of sleeping once it is at its charger.
     sent: Cause,
+    /// While it is to leave the fleet, whether it slept, or was to sleep, before.
+    slept: Option<bool>,
 }
 
 /// A command and its header.
@@ -78,6 +80,10 @@ pub enum SafeRobotSymptom {
     },
     /// The robot was sent to sleep, and is at its charger.
     AtRest,
+    /// The robot is to leave the fleet.
+    Leaves,
+    /// The robot was to leave the fleet, and stays.
+    Stays,
 }
 
 /// Reaction to the reason.
@@ -119,6 +125,8 @@ impl Recordable for SafeRobotSymptom {
             SafeRobotSymptom::Assigned { luggage } => {
                 record!(assigned_while_asleep: "is to carry luggage {luggage}, and sleeps", luggage)
             }
+            SafeRobotSymptom::Leaves => record!(leaves_fleet: "is to leave the fleet"),
+            SafeRobotSymptom::Stays => record!(stays_in_fleet: "does not leave the fleet"),
             SafeRobotSymptom::AtRest => record!(at_charger_to_sleep: "is at its charger, and was sent to sleep"),
         }
     }
@@ -139,7 +147,12 @@ impl Recordable for SafeRobotDecision {
 }
 
 lasting! {
-    SafeRobotState as RobotStateMemory { arrived: Vec<Arrived>, called: Option<Called>, sent: Cause }
+    SafeRobotState as RobotStateMemory {
+        arrived: Vec<Arrived>,
+        called: Option<Called>,
+        sent: Cause,
+        slept: Option<bool>,
+    }
 }
 
 impl Loop for SafeRobotState {
@@ -173,6 +186,18 @@ impl Loop for SafeRobotState {
         if knowledge.variables.critical {
             return Ok(None);
         }
+        let is_on_leave = knowledge.variables.asleep || knowledge.relieved;
+        if knowledge.leaving {
+            // The newest command waits: it holds if the robot stays.
+            self.slept.get_or_insert(is_on_leave);
+            if !is_on_leave {
+                return Ok(Some(SafeRobotSymptom::Leaves));
+            }
+            return Ok(self.rests(knowledge, context));
+        }
+        if self.slept.take() == Some(false) && is_on_leave && self.called.is_none() {
+            return Ok(Some(SafeRobotSymptom::Stays));
+        }
         if let Some(Called { state, cause }) = self.called.take() {
             context.because(cause);
             let symptom = SafeRobotSymptom::Woken { emulate: state.emulate };
@@ -192,9 +217,7 @@ impl Loop for SafeRobotState {
                 SafeRobotSymptom::NobodyForLuggage { luggage }
             }));
         }
-        let rests = knowledge.relieved && knowledge.is_free() && knowledge.is_at_charger();
-        context.because(self.sent);
-        Ok(rests.then_some(SafeRobotSymptom::AtRest))
+        Ok(self.rests(knowledge, context))
     }
 
     fn plan(
@@ -213,6 +236,8 @@ impl Loop for SafeRobotState {
             SafeRobotSymptom::NobodyForLuggage { .. } | SafeRobotSymptom::Assigned { .. } => {
                 Some(SafeRobotDecision::Awake { emulate: 0 })
             }
+            SafeRobotSymptom::Stays => Some(SafeRobotDecision::Awake { emulate: 0 }),
+            SafeRobotSymptom::Leaves => Some(SafeRobotDecision::Finish),
             SafeRobotSymptom::SentToSleep => (!asleep).then_some(SafeRobotDecision::Finish),
             SafeRobotSymptom::AtRest => Some(SafeRobotDecision::Sleep),
         })
@@ -251,6 +276,15 @@ impl Loop for SafeRobotState {
 
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         self.go_on(saved)
+    }
+}
+
+impl SafeRobotState {
+    /// The end of the way to sleep.
+    fn rests(&self, knowledge: &RobotKnowledge, context: &mut Context<'_>) -> Option<SafeRobotSymptom> {
+        let rests = knowledge.relieved && knowledge.is_free() && knowledge.is_at_charger();
+        context.because(self.sent);
+        rests.then_some(SafeRobotSymptom::AtRest)
     }
 }
 

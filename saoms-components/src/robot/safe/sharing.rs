@@ -22,7 +22,7 @@ impl RobotKnowledge {
             return false;
         }
         let mut others = self.sharers().peekable();
-        others.peek().is_some() && !others.any(|other| Urgency::Exhausted.is_of(other.priority))
+        others.peek().is_some() && !others.any(|other| Urgency::Exhausted.is_at_most_that_of(other.priority))
     }
 
     /// True if a robot beside a charger that it shares leaves it to the one that is there.

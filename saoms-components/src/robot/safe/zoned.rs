@@ -7,8 +7,8 @@ use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
 use crate::messages::{IMMOVABLE, Position, Standing};
 use crate::robot::hardware_client::Reply;
-use crate::robot::{ASSISTANCE, HEARD, RobotKnowledge};
-use crate::zone::{MOST_AHEAD, Wish};
+use crate::robot::{ASSISTANCE, RobotKnowledge};
+use crate::zone::Wish;
 
 /// Number of executions after which a robot repeats its state for the first time.
 const REPEAT_STATE: u64 = 50;
@@ -18,19 +18,13 @@ const MOST_BY_LATENCY: u32 = 8;
 
 impl RobotKnowledge {
     /// Takes in what zones say.
-    ///
-    /// # Errors
-    /// The region of hearing cannot be set.
-    pub(in crate::robot) fn hear_zones(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let RobotKnowledge { zones: Some(zones), routes, hardware, number, block, next, .. } = self else {
-            return Ok(());
-        };
+    pub(in crate::robot) fn hear_zones(&mut self, context: &mut Context<'_>) {
+        let RobotKnowledge { zones: Some(zones), routes, hardware, number, block, .. } = self else { return };
         zones.stand(context, *number, *block);
         if zones.hear(context, routes.map()) {
             let begun = if hardware.is_moving() { 2 } else { 1 };
             zones.turn(begun, |from, to| routes.between(from, to));
         }
-        if routes.map().is_some_and(|map| map.size() <= HEARD) { Ok(()) } else { zones.hear_around(context, *next) }
     }
 
     /// True if the robot is not on the floor, and waits until it may enter it.
@@ -59,9 +53,6 @@ impl RobotKnowledge {
         }
         if !zones.waits_to_enter() {
             return Ok(true);
-        }
-        if self.routes.map().is_none_or(|map| map.size() > HEARD) {
-            zones.hear_around(context, self.block)?;
         }
         zones.hear(context, self.routes.map());
         if !zones.waits_to_enter() {
@@ -171,12 +162,9 @@ impl RobotKnowledge {
         self.zones.as_ref().is_some_and(|zones| zones.is_cut_off())
     }
 
-    /// Number of blocks that have to be granted ahead. A robot that has to reach its charger in time needs the whole
-    /// way there; another one as many as it drives until it has an answer.
+    /// Number of blocks that have to be granted ahead: as many as it drives until it has an answer. With more, also on
+    /// the way to its charger, others would wait for blocks long before the robot comes to them.
     fn blocks_ahead(&self) -> u32 {
-        if self.leg.urgency >= Urgency::Energy {
-            return MOST_AHEAD;
-        }
         let latency = self.zones.as_ref().map_or(0, |zones| zones.latency());
         latency.div_ceil(self.energy.executions_of_move().max(1)).min(MOST_BY_LATENCY)
     }

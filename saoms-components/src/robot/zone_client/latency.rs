@@ -54,6 +54,11 @@ impl Latency {
         }
     }
 
+    /// Zones have new borders: nobody answers requests to those that are known no more.
+    pub(super) fn hears_zones(&mut self, is_known: impl Fn(u32) -> bool) {
+        self.request = self.request.filter(|request| is_known(request.zone));
+    }
+
     /// The zone has taken in all requests up to this one.
     pub(super) fn hears(&mut self, zone: u32, number: u64) {
         let Some(request) = self.request.filter(|request| request.zone == zone && request.number <= number) else {

@@ -11,10 +11,10 @@ use saoms_api::{Context, Failure, Field, Publisher, Region, Subscription, Time};
 use crate::grid::{Block, Map};
 use crate::messages::{
     GRANT, GRANT_REQUEST, Grant, GrantRequest, LAST_NUMBER, PRESENCE, Position, Presence, RobotList, Standing, Step,
-    TERRITORY, Territory,
+    TERRITORY, Territory, address,
 };
 use crate::validation::MessageValidator;
-use crate::zone::{Held, Link, Passage, Wish};
+use crate::zone::{Held, Link, Passage, Territories, Wish};
 use latency::Latency;
 
 /// Number of executions after which a robot repeats a request that its zone did not confirm.
@@ -35,12 +35,6 @@ const ANSWERS: u32 = 4;
 
 /// Number of executions after which a robot says that it cannot enter the floor.
 const LONG: u32 = 50;
-
-/// Distance within which the robot hears grants, in blocks: they are sent to where the zone knows that it is.
-const HEARING: u32 = 12;
-
-/// Number of blocks that the robot drives before its region of hearing follows.
-const SLACK: u32 = 4;
 
 /// A robot's passage through zones, and the topics on which it speaks with them.
 #[derive(Debug)]
@@ -85,7 +79,6 @@ pub(crate) struct ZoneClient {
     /// For each zone that lets the robot make way to a block of another one, what it said last.
     asides: BTreeMap<u32, Aside>,
     latency: Latency,
-    hears_around: Option<Block>,
     /// Number of executions in which it waited to enter the floor.
     waited: u32,
 }
@@ -98,6 +91,7 @@ pub(crate) struct ZoneMemory {
     /// True if it waits until it may enter the floor.
     enters: bool,
     territories: Vec<Territory>,
+    former: Vec<Territory>,
     said_lost: Option<bool>,
     said_charger: Block,
     links: Vec<LinkMemory>,
@@ -146,18 +140,21 @@ struct LinkMemory {
 }
 
 impl ZoneClient {
-    /// The client of a robot whose site has zones.
+    /// The client of a robot, if its site has zones.
     ///
     /// # Errors
     /// The component cannot use the topics.
-    pub(crate) fn new(context: &mut Context<'_>) -> Result<Option<ZoneClient>, Failure> {
+    pub(crate) fn new(context: &mut Context<'_>, robot: u32) -> Result<Option<ZoneClient>, Failure> {
         if context.publishers(&GRANT).is_empty() {
             return Ok(None);
         }
+        let grants = context.subscribe(&GRANT)?;
+        let address = address(robot);
+        context.set_region(&grants, Some(Region::around((address.x, address.y), 0)))?;
         Ok(Some(ZoneClient {
             passage: None,
             territories: context.subscribe(&TERRITORY)?,
-            grants: context.subscribe(&GRANT)?,
+            grants,
             requests: context.publish(&GRANT_REQUEST)?,
             presences: context.publish(&PRESENCE)?,
             is_asked: false,
@@ -179,7 +176,6 @@ impl ZoneClient {
             in_the_way: None,
             asides: BTreeMap::new(),
             latency: Latency::default(),
-            hears_around: None,
             waited: 0,
         }))
     }
@@ -196,7 +192,8 @@ impl ZoneClient {
             incarnation: passage.incarnation(),
             held: held.collect(),
             enters: passage.enters(),
-            territories: passage.territories().to_vec(),
+            territories: passage.territories().known().to_vec(),
+            former: passage.territories().former().to_vec(),
             said_lost: self.said_lost,
             said_charger: self.said_charger,
             links: links.collect(),
@@ -220,7 +217,7 @@ impl ZoneClient {
             said: link.said,
             heard: link.heard,
         });
-        let (incarnation, territories) = (memory.incarnation, memory.territories);
+        let (incarnation, territories) = (memory.incarnation, Territories::with(memory.territories, memory.former));
         let held = (held.collect(), memory.enters);
         self.passage = Some(Passage::with(robot, incarnation, held, territories, links.collect()));
         self.is_asked = true;
@@ -273,6 +270,7 @@ impl ZoneClient {
                 passage.hear_territory(territory);
                 *is_asked = true;
                 validator.expect_introductions();
+                latency.hears_zones(|zone| passage.knows(zone));
             }
         }
         self.hear_grants(context, area)
@@ -315,18 +313,6 @@ impl ZoneClient {
             }
         }
         is_late
-    }
-
-    /// Hears grants around the robot alone, on a map where that saves something.
-    ///
-    /// # Errors
-    /// The region cannot be set.
-    pub(crate) fn hear_around(&mut self, context: &mut Context<'_>, block: Block) -> Result<(), Failure> {
-        if self.hears_around.is_some_and(|middle| middle.distance(block) <= SLACK) {
-            return Ok(());
-        }
-        self.hears_around = Some(block);
-        context.set_region(&self.grants, Some(Region::around((block.x, block.y), HEARING + SLACK)))
     }
 
     /// The block that the robot may enter next.

@@ -28,6 +28,10 @@ struct Scenario {
     map: &'static str,
     /// First column and number of columns of each zone.
     zones: &'static [(i32, u32)],
+    /// Borders that follow, at any moment: number, first column and number of columns of each zone.
+    drawings: &'static [&'static [(u32, i32, u32)]],
+    /// True if zones with other borders ask again and again, and robots answer all zones at once, too.
+    asks: bool,
     /// Start and goal of each robot.
     robots: &'static [(Spot, Spot)],
     /// Number of the last robots that are not on the floor at first, and want to enter it.
@@ -65,6 +69,10 @@ struct State {
     network: Vec<Message>,
     faults: Faults,
     arriving: usize,
+    /// How often the zones got other borders.
+    drawings: usize,
+    /// True if robots answer to all zones at once, too.
+    asks: bool,
 }
 
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -73,6 +81,8 @@ struct Zone {
     maneuvers: Vec<Maneuver>,
     /// Robots that did not answer in this term.
     unheard: BTreeSet<u32>,
+    /// True if it grants before all have answered.
+    has_record: bool,
 }
 
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -105,7 +115,7 @@ enum Message {
     /// hears it.
     Clear(u32, u64, ClearTerm, (Block, Block)),
     /// To a zone: this robot is gone, which was this incarnation of it then.
-    Gone(usize, u32, u64),
+    Gone(u32, u32, u64),
 }
 
 impl Message {
@@ -135,6 +145,7 @@ impl Scenario {
             ledger: Ledger::new(Territory { zone, term: 1, corner: Block::new(x, 0), width, height }),
             maneuvers: Vec::new(),
             unheard: robots.clone(),
+            has_record: false,
         });
         let standing = self.robots.len() - self.entering;
         let fleet = self.robots.iter().zip(1..).map(|(&(at, goal), robot)| {
@@ -148,6 +159,8 @@ impl Scenario {
             network: Vec::new(),
             faults: self.faults,
             arriving: self.arriving,
+            drawings: 0,
+            asks: self.asks,
         };
         for zone in 0..state.zones.len() {
             let territory = state.zones[zone].ledger.territory().clone();
@@ -213,10 +226,13 @@ impl Scenario {
 }
 
 impl State {
-    /// No two robots hold the same block, and each holds only what its zone knows.
+    /// No two robots hold the same block.
     fn check(&self, name: &str) {
         let on_floor = self.robots.iter().filter(|robot| robot.is_on_floor());
-        let held = on_floor.flat_map(|robot| [Some(robot.at), robot.moving].into_iter().flatten());
+        let held = on_floor.flat_map(|robot| {
+            let held = robot.passage.held().iter().map(|held| held.step.block);
+            held.chain([robot.at]).chain(robot.moving).collect::<BTreeSet<Block>>()
+        });
         let mut blocks: Vec<Block> = held.collect();
         let all = blocks.len();
         blocks.sort_unstable();
@@ -244,6 +260,41 @@ impl State {
         }
     }
 
+    /// The place of the zone with a number.
+    fn place(&self, zone: u32) -> Option<usize> {
+        self.zones.iter().position(|one| one.ledger.territory().zone == zone)
+    }
+
+    fn everyone(&self) -> BTreeSet<u32> {
+        (1..).take(self.robots.len()).collect()
+    }
+
+    /// The zones get their next borders, at one instant. Those whose blocks stay the same go on.
+    fn drawn(&self, rules: &Scenario) -> Option<State> {
+        let borders = rules.drawings.get(self.drawings)?;
+        let ledgers: Vec<&Ledger> = self.zones.iter().map(|zone| &zone.ledger).collect();
+        let term = ledgers.iter().map(|ledger| ledger.territory().term + 1).max()?;
+        let height = ledgers.first()?.territory().height;
+        let mut next = State { drawings: self.drawings + 1, ..self.clone() };
+        let zones = borders.iter().map(|&(zone, x, width)| {
+            let territory = Territory { zone, term, corner: Block::new(x, 0), width, height };
+            let has_record = self.zones.iter().all(|zone| zone.has_record || zone.unheard.is_empty());
+            let same = |one: &&Zone| Territory { term, ..one.ledger.territory().clone() } == territory;
+            self.zones.iter().find(same).cloned().unwrap_or_else(|| Zone {
+                ledger: Ledger::drawn(territory.clone(), &ledgers),
+                maneuvers: Vec::new(),
+                unheard: if rules.asks || !has_record { self.everyone() } else { BTreeSet::new() },
+                has_record,
+            })
+        });
+        next.zones = zones.collect();
+        for zone in &next.zones.clone() {
+            let territory = zone.ledger.territory();
+            self.everyone().into_iter().for_each(|robot| next.send(Message::Territory(robot, territory.clone())));
+        }
+        Some(next)
+    }
+
     fn announce(&mut self, zone: usize) {
         let territory = self.zones[zone].ledger.territory().clone();
         for robot in self.zones[zone].unheard.clone() {
@@ -254,6 +305,9 @@ impl State {
     /// A robot says to all zones of which of them it holds nothing, and to some of them what it holds.
     fn answer(&mut self, robot: usize) {
         self.request(robot, false);
+        if !self.asks {
+            return;
+        }
         let passage = &self.robots[robot].passage;
         let (number, incarnation, clear) = (passage.robot(), passage.incarnation(), passage.clear());
         let place = (passage.held()[0].step.block, passage.end());
@@ -279,10 +333,12 @@ impl State {
     }
 
     fn plan(&mut self, zone: usize, again: bool, ground: &mut Ground, rules: &Scenario) {
+        self.announce(zone);
         let one = &mut self.zones[zone];
-        if !one.unheard.is_empty() {
-            return self.announce(zone);
+        if !one.unheard.is_empty() && !one.has_record {
+            return;
         }
+        one.has_record = true;
         let mut told = plan(&mut one.ledger, &mut one.maneuvers, ground, rules.ahead).granted;
         let robots: Vec<u32> = one.ledger.members().keys().copied().collect();
         for robot in &robots {
@@ -305,12 +361,13 @@ impl State {
                 if self.robots[*robot as usize - 1].is_gone => {}
             Message::Gone(zone, robot, incarnation) => {
                 self.network.retain(|other| other != message);
+                let Some(zone) = self.place(*zone) else { return };
                 // A robot that the zone heard of since then is back.
-                let known = self.zones[*zone].ledger.member(*robot);
+                let known = self.zones[zone].ledger.member(*robot);
                 if known.is_none_or(|known| known.request.incarnation <= *incarnation) {
-                    self.zones[*zone].ledger.end(*robot, *incarnation);
-                    self.zones[*zone].unheard.remove(robot);
-                    self.plan(*zone, false, ground, rules);
+                    self.zones[zone].ledger.end(*robot, *incarnation);
+                    self.zones[zone].unheard.remove(robot);
+                    self.plan(zone, false, ground, rules);
                 }
             }
             Message::Territory(robot, territory) => {
@@ -326,7 +383,7 @@ impl State {
                 self.request(robot, false);
             }
             Message::Request(request) => {
-                let zone = request.zone as usize - 1;
+                let Some(zone) = self.place(request.zone) else { return };
                 let is_news = self.zones[zone].ledger.hear(request) != Heard::Nothing;
                 let is_of_term = request.term == self.zones[zone].ledger.territory().term;
                 if is_of_term && self.zones[zone].unheard.remove(&request.robot) || is_news {
@@ -334,7 +391,7 @@ impl State {
                 }
             }
             Message::Clear(robot, incarnation, clear, place) => {
-                let zone = clear.zone as usize - 1;
+                let Some(zone) = self.place(clear.zone) else { return };
                 let is_of_term = clear.term == self.zones[zone].ledger.territory().term;
                 let is_news = is_of_term && self.zones[zone].ledger.hear_clear(*robot, *incarnation, *place);
                 if is_of_term && self.zones[zone].unheard.remove(robot) || is_news {
@@ -390,7 +447,8 @@ impl State {
                 (one.is_gone, one.moving) = (true, None);
                 let number = one.passage.robot();
                 let incarnation = one.passage.incarnation();
-                (0..self.zones.len()).for_each(|zone| taken.send(Message::Gone(zone, number, incarnation)));
+                let zones = self.zones.iter().map(|zone| zone.ledger.territory().zone);
+                zones.for_each(|zone| taken.send(Message::Gone(zone, number, incarnation)));
                 // Its program may have ended before.
                 let mut ended = taken.clone();
                 taken.robots[robot].passage.leave_floor();
@@ -422,6 +480,7 @@ impl State {
             next.plan(zone, true, ground, rules);
             all.push(next);
         }
+        all.extend(self.drawn(rules));
         if self.faults.zones > 0 {
             for zone in 0..self.zones.len() {
                 let mut crashed = self.clone();
@@ -430,7 +489,8 @@ impl State {
                 let term = territory.term + 1;
                 crashed.zones[zone].ledger = Ledger::new(Territory { term, ..territory });
                 crashed.zones[zone].maneuvers.clear();
-                crashed.zones[zone].unheard = (1..).take(self.robots.len()).collect();
+                crashed.zones[zone].unheard = self.everyone();
+                crashed.zones[zone].has_record = false;
                 crashed.announce(zone);
                 all.push(crashed);
             }

@@ -8,14 +8,18 @@ use crate::zone::passage::Passage;
 impl State {
     /// Drops messages about terms that nobody waits for any more, and that change nothing when they come again.
     fn drop_answered(&mut self) {
-        let State { zones, robots, network, faults, .. } = self;
+        let State { zones, robots, network, faults, drawings, .. } = self;
+        let place = |zone: u32| zones.iter().position(|one| one.ledger.territory().zone == zone);
         network.retain(|message| {
+            if *drawings > 0 && is_former(message, zones, robots) {
+                return false;
+            }
             let reader = match message {
                 Message::Territory(robot, _) => *robot,
                 Message::Grant(grant) => grant.robot,
                 Message::Request(request) => {
                     // What changes nothing now does not later on, since the robot says nothing new.
-                    let ledger = &zones[request.zone as usize - 1].ledger;
+                    let ledger = &zones[place(request.zone).unwrap()].ledger;
                     return !ledger.has_ended(request.robot, request.incarnation)
                         || ledger.clone().hear(request) != Heard::Nothing;
                 }
@@ -26,18 +30,20 @@ impl State {
             }
             let (robot, zone, is_known) = match message {
                 Message::Territory(robot, territory) => {
-                    let known = robots[*robot as usize - 1].passage.territories();
+                    let known = robots[*robot as usize - 1].passage.territories().known();
                     let known = known.iter().find(|known| known.zone == territory.zone);
                     (robot, territory.zone, known.is_some_and(|known| known.term >= territory.term))
                 }
                 Message::Clear(robot, incarnation, clear, _) => {
-                    let member = zones[clear.zone as usize - 1].ledger.member(*robot);
+                    let ledger = &zones[place(clear.zone).unwrap()].ledger;
+                    let member = ledger.member(*robot);
                     let is_known = member.is_none_or(|member| member.request.incarnation >= *incarnation);
-                    (robot, clear.zone, is_known || clear.term < zones[clear.zone as usize - 1].ledger.territory().term)
+                    (robot, clear.zone, is_known || clear.term < ledger.territory().term)
                 }
                 Message::Request(_) | Message::Grant(_) | Message::Gone(..) => return true,
             };
-            !is_known || faults.zones > 0 || zones[zone as usize - 1].unheard.contains(robot)
+            let waits = place(zone).is_some_and(|place| zones[place].unheard.contains(robot));
+            !is_known || faults.zones > 0 || waits
         });
     }
 
@@ -82,7 +88,7 @@ impl State {
                 one.said.link = before;
             }
             let held = (held, passage.enters());
-            *passage = Passage::with(robot, passage.incarnation(), held, passage.territories().to_vec(), links);
+            *passage = Passage::with(robot, passage.incarnation(), held, passage.territories().clone(), links);
         }
         for Zone { ledger, .. } in &mut self.zones {
             let zone = ledger.territory().zone;
@@ -102,6 +108,28 @@ impl State {
                     grant.steps.iter_mut().for_each(|step| see(Numbered::Step, grant.link, &mut step.number));
                 }
             }
+        }
+    }
+}
+
+/// True for a message to a zone that is none any more, or was another one then, and for a message of such a zone to a
+/// robot that knows another one there: nothing comes of it.
+fn is_former(message: &Message, zones: &[Zone], robots: &[Robot]) -> bool {
+    let is_over = |zone: u32, term: u64| {
+        let now = zones.iter().map(|one| one.ledger.territory()).find(|now| now.zone == zone);
+        now.is_none_or(|now| now.term > term)
+    };
+    let territories = |robot: u32| robots[robot as usize - 1].passage.territories();
+    match message {
+        Message::Request(request) => is_over(request.zone, request.term),
+        Message::Clear(_, _, clear, _) => is_over(clear.zone, clear.term),
+        Message::Gone(zone, ..) => is_over(*zone, u64::MAX),
+        Message::Territory(robot, territory) => {
+            is_over(territory.zone, territory.term) && !territories(*robot).clone().hear(territory)
+        }
+        Message::Grant(grant) => {
+            let known = territories(grant.robot).known().iter().find(|known| known.zone == grant.zone);
+            known.is_none_or(|known| known.term > grant.term)
         }
     }
 }

@@ -9,6 +9,8 @@ const SQUARE: Scenario = Scenario {
     zones: &[(0, 2)],
     robots: &[((0, 0), (1, 1)), ((1, 1), (0, 0))],
     entering: 0,
+    drawings: &[],
+    asks: true,
     faults: NONE,
     ahead: 1,
     needed: 0,
@@ -123,4 +125,56 @@ fn robots_that_enter_the_floor_among_others_do_not_collide_or_stand_still() {
 fn robots_and_zones_that_fail_while_a_robot_enters_the_floor_lead_to_no_collision_and_no_standstill() {
     let faults = [Faults { robots: 1, ..NONE }, Faults { zones: 1, ..NONE }, Faults { gone: 1, back: 1, ..NONE }];
     explore(&faults.map(|faults| Scenario { faults, arriving: 1, ..ENTRY }));
+}
+
+/// Borders: number, first column and number of columns of each zone.
+type Borders = &'static [(u32, i32, u32)];
+
+/// The first column becomes a zone of its own, and the other one keeps its number; or both get new ones.
+const EAST: Borders = &[(1, 1, 1), (2, 0, 1)];
+const BOTH: Borders = &[(2, 0, 1), (3, 1, 1)];
+
+/// Both columns become one zone.
+const UNITED: Borders = &[(1, 0, 2)];
+
+/// The border of three columns moves; and again, to a zone of another number.
+const MOVED: Borders = &[(1, 0, 1), (2, 1, 2)];
+const AGAIN: Borders = &[(3, 0, 2), (2, 2, 1)];
+
+/// Two zones beside each other.
+const HALVES: &[(i32, u32)] = &[(0, 1), (1, 1)];
+
+/// The robot of a square, which drives over the border.
+const ALONE: Scenario = Scenario { robots: &[((0, 0), (1, 1))], ..SQUARE };
+
+#[test]
+fn a_zone_that_is_divided_leads_to_no_collision_and_no_standstill() {
+    explore(&[
+        Scenario { name: "divided, alone", drawings: &[EAST], ..ALONE },
+        Scenario { name: "divided, new numbers, alone", drawings: &[BOTH], arriving: 1, ..ALONE },
+    ]);
+}
+
+#[test]
+fn zones_that_become_one_lead_to_no_collision_and_no_standstill() {
+    explore(&[
+        Scenario { name: "united, alone", zones: HALVES, drawings: &[UNITED], ..ALONE },
+        Scenario { name: "united, divided, alone", zones: HALVES, drawings: &[UNITED, EAST], arriving: 1, ..ALONE },
+    ]);
+}
+
+#[test]
+fn a_border_that_moves_leads_to_no_collision_and_no_standstill() {
+    explore(&[
+        Scenario { name: "moved, alone", drawings: &[MOVED], arriving: 1, ..BORDER },
+        Scenario { name: "moved twice, alone", drawings: &[MOVED, AGAIN], asks: false, arriving: 1, ..BORDER },
+        Scenario { name: "moved", drawings: &[MOVED], asks: false, arriving: 1, ..TRAIN },
+    ]);
+}
+
+#[test]
+fn robots_and_zones_that_fail_while_borders_change_lead_to_no_collision_and_no_standstill() {
+    let faults = [Faults { robots: 1, ..NONE }, Faults { zones: 1, ..NONE }];
+    explore(&faults.map(|faults| Scenario { name: "moved, alone", drawings: &[MOVED], faults, arriving: 1, ..BORDER }));
+    explore(&faults.map(|faults| Scenario { name: "divided, alone", drawings: &[EAST], faults, arriving: 1, ..ALONE }));
 }

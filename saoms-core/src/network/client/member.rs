@@ -2,6 +2,7 @@
 
 mod actions;
 mod frames;
+mod linger;
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -23,6 +24,7 @@ use super::super::{FROM_OUTSIDE, key};
 use super::FIRST_OF_TOPICS;
 use super::link::Link;
 use super::unsent::UnsentQueue;
+pub(super) use linger::Linger;
 
 /// Longest time between two looks at what is due, in nanoseconds.
 const LONGEST_PAUSE: u64 = 200_000_000;
@@ -30,6 +32,11 @@ const LONGEST_PAUSE: u64 = 200_000_000;
 const ROOM_AGAIN: Duration = Duration::from_millis(1);
 /// Messages of components after which the network gets what they say, at most.
 const MOST_AT_ONCE: usize = 1_024;
+/// Time that it takes the thread of components to send their messages, in nanoseconds, if a transport does not let it
+/// wait for room.
+const LONGEST_AT_ONCE: u64 = 300_000;
+/// Time after a longer wait in which that thread sends nothing itself, in nanoseconds.
+const CROWDED: u64 = 1_000_000_000;
 /// Time from one word of a router about rights to the next.
 const ACCESS_AGAIN: Duration = Duration::from_secs(1);
 
@@ -49,6 +56,8 @@ pub(super) struct Member<F> {
     start: Instant,
     /// When the exchange has something to do.
     next: u64,
+    /// Until when the thread of the network alone sends messages: the transport made another one wait for room.
+    crowded_until: u64,
     program: u64,
     /// Time without a sign of life after which a program is missed, in nanoseconds: news are everywhere by then.
     pub(super) patience: u64,
@@ -56,6 +65,9 @@ pub(super) struct Member<F> {
     done_since: Option<u64>,
     /// True if it was told that programs are waited for.
     has_told_who_lacks: bool,
+    /// True if it was told that programs are waited for which lack events.
+    has_told_awaited: bool,
+    linger: Duration,
     pub(super) membership: Membership,
     /// True until it was told that this program has joined.
     is_joining: bool,
@@ -96,10 +108,13 @@ impl<F: Fleet> Member<F> {
             unsent: UnsentQueue::default(),
             start: Instant::now(),
             next: 0,
+            crowded_until: 0,
             program: settings.program,
             patience: settings.patience,
             done_since: None,
             has_told_who_lacks: false,
+            has_told_awaited: false,
+            linger: Duration::from_nanos(settings.linger),
             rights: membership.user.clone().map(|user| Rights::new(membership.url.clone(), user)),
             membership,
             is_joining: true,
@@ -174,9 +189,26 @@ impl<F: Fleet> Member<F> {
         }
     }
 
-    /// True if nothing is left for others to receive.
-    pub(super) fn has_sent_all(&self) -> bool {
-        self.exchange.is_complete() && !self.exchange.awaits_answers() && self.unsent.is_empty()
+    /// Sends messages of components on the thread that executes these, for the same reason. False if the thread of the
+    /// network has to, since more than that is to be done.
+    pub(super) fn send_at_once(&mut self) -> bool {
+        if self.session.is_none() || !self.unsent.is_empty() {
+            return false;
+        }
+        let begin = self.now();
+        if begin < self.crowded_until {
+            return false;
+        }
+        let Some(waiting) = self.port.take_short() else { return false };
+        self.take(waiting);
+        let end = self.now();
+        if end - begin > LONGEST_AT_ONCE {
+            self.crowded_until = end + CROWDED;
+        }
+        if !self.has_time() {
+            self.port.nudge();
+        }
+        true
     }
 
     /// Leaves the network. Gives the session, which is to be closed.
@@ -202,7 +234,11 @@ impl<F: Fleet> Member<F> {
             );
             self.fleet.tell(Level::Warning, text);
         }
-        let is_done = self.exchange.is_done() && self.exchange.is_complete() && self.undelivered.is_empty();
+        let is_agreed = self.exchange.is_done();
+        if is_agreed {
+            self.tell_awaited(false);
+        }
+        let is_done = is_agreed && self.exchange.is_complete() && self.undelivered.is_empty();
         let since = self.done_since.filter(|_| is_done);
         self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
         self.done_since = is_done.then(|| since.unwrap_or(now));
@@ -249,6 +285,7 @@ impl<F: Fleet> Member<F> {
         if waiting.lost > 0 {
             let text =
                 format!("{} messages were sent faster than the network could take them, and are lost", waiting.lost);
+            self.fleet.count_lost(waiting.lost, &text);
             self.fleet.tell(Level::Error, text);
         }
         for link in waiting.links {

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
-use std::thread::sleep;
+use std::thread::{self, ThreadId, sleep};
 use std::time::{Duration, Instant};
 
 use saoms_abi::{Bytes, Sink, Status, TRANSPORT_VERSION, TransportEvents, TransportTable};
@@ -17,6 +17,7 @@ use super::unsent::MOST_BYTES;
 use crate::network::control::{ControlRequest, Reply};
 use crate::network::exchange::wire::{Envelope, Request, Vote};
 use crate::network::exchange::{Remembered, Settings};
+use crate::network::port::{MOST_AT_ONCE, MOST_BYTES_AT_ONCE};
 use crate::network::transport::{Opened, SessionSettings, Transport, TransportSession};
 use crate::network::{Fleet, FromRun, Membership, Port, Undelivered};
 
@@ -26,8 +27,8 @@ const LONGEST: Duration = Duration::from_secs(60);
 /// What a session was told.
 #[derive(Default)]
 struct Wire {
-    /// The key and the envelope of each message.
-    put: Mutex<Vec<(String, Vec<u8>)>>,
+    /// The key and the envelope of each message, and the thread that put it.
+    put: Mutex<Vec<(String, Vec<u8>, ThreadId)>>,
     subscribed: Mutex<Vec<String>>,
     is_full: AtomicBool,
 }
@@ -35,11 +36,16 @@ struct Wire {
 impl Wire {
     /// The numbers of the messages of components that were put.
     fn numbers(&self) -> Vec<u64> {
+        self.numbers_by_thread().into_iter().map(|(number, _)| number).collect()
+    }
+
+    /// The same with the threads that put them.
+    fn numbers_by_thread(&self) -> Vec<(u64, ThreadId)> {
         let put = self.put.lock().unwrap();
-        let of_topics = put.iter().filter(|(key, _)| key.starts_with("saoms/1/topic/"));
-        let numbers = of_topics.flat_map(|(_, envelope)| {
+        let of_topics = put.iter().filter(|(key, ..)| key.starts_with("saoms/1/topic/"));
+        let numbers = of_topics.flat_map(|(_, envelope, by)| {
             let Envelope { number, messages, .. } = cdr::decode(envelope).unwrap();
-            number..number + messages.len() as u64
+            (number..number + messages.len() as u64).map(|number| (number, *by))
         });
         numbers.collect()
     }
@@ -86,7 +92,8 @@ unsafe extern "C" fn put(session: *mut c_void, key: Bytes, _: Bytes, attachment:
     if wire.is_full.load(Ordering::SeqCst) {
         return Status::FULL;
     }
-    wire.put.lock().unwrap().push((key.unwrap().to_owned(), attachment.unwrap().to_vec()));
+    let by = thread::current().id();
+    wire.put.lock().unwrap().push((key.unwrap().to_owned(), attachment.unwrap().to_vec(), by));
     Status::OK
 }
 
@@ -139,6 +146,12 @@ impl Fleet for Idle {
         self.told.lock().unwrap().push((text, self.wire.subscribed.lock().unwrap().clone()));
     }
 
+    fn count_lost(&self, _: u64, _: &str) {}
+
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
     fn alert(&self, _: &str, _: &str, _: Option<String>) {}
 
     fn control(&self, _: ControlRequest, _: Reply) {}
@@ -183,6 +196,7 @@ fn program(url: &str) -> Program {
         name: "own".to_owned(),
         patience: 1_000_000_000,
         limit: 1 << 20,
+        linger: 0,
         components: BTreeSet::from(["Own".to_owned()]),
         others: BTreeSet::new(),
         memory: None,
@@ -254,4 +268,32 @@ fn a_program_has_joined_once_what_its_components_read_is_subscribed() {
         assert!(subscribed.iter().any(|keys| keys.contains(topic)), "{subscribed:?}");
     }
     assert_eq!(told.lock().unwrap().iter().filter(|(text, _)| text.contains("has joined")).count(), 1);
+}
+
+#[test]
+fn a_few_short_messages_are_put_by_the_thread_that_leaves_them() {
+    let Program { wire, port, .. } = &program("at once");
+    let own = thread::current().id();
+    let newest = || wire.numbers_by_thread().last().copied();
+    // While the thread of the network is at work, it puts them.
+    let puts_one = || {
+        port.put([message(8)].into_iter());
+        newest().is_some_and(|(_, by)| by == own)
+    };
+    wait("the thread of the network does not sleep", puts_one);
+    wait("the thread of the network does not sleep on", puts_one);
+    let before = wire.numbers().len();
+    port.put((0..MOST_AT_ONCE).map(|_| message(8)));
+    let mut sent = MOST_AT_ONCE;
+    wait("not all are put", || wire.numbers().len() >= before + sent);
+
+    // More of them, or longer ones, would hold the caller up.
+    for many in [(0..=MOST_AT_ONCE).map(|_| message(8)).collect(), vec![message(MOST_BYTES_AT_ONCE + 1)]] {
+        sent += many.len();
+        port.put(many.into_iter());
+        wait("not all are put", || wire.numbers().len() >= before + sent);
+        assert_ne!(newest().map(|(_, by)| by), Some(own));
+    }
+    let numbers = wire.numbers();
+    assert!(numbers.is_sorted(), "{numbers:?}");
 }

@@ -21,6 +21,9 @@ pub struct Settings {
     pub patience: u64,
     /// Bytes of events that are kept for other programs, at most.
     pub limit: usize,
+    /// Time for which a program that ends waits for those that give no sign of life and lack events of it, in
+    /// nanoseconds.
+    pub linger: u64,
     /// The components of this program that are on the network: their paths.
     pub components: BTreeSet<String>,
     /// The names of programs without which no work is done: those of the other nodes of the fleet.
@@ -141,8 +144,10 @@ pub enum News {
     Unreachable { program: u64, name: Arc<str>, components: Vec<Arc<str>> },
     /// It gives signs of life again.
     Back { program: u64, name: Arc<str> },
-    /// It was away for so long that nothing is kept for it any more.
-    GivenUp { program: u64, name: Arc<str> },
+    /// It was away for so long that nothing is kept for it any more: it lacks so many events.
+    GivenUp { program: u64, name: Arc<str>, count: u64 },
+    /// Its components have begun in another program: nothing is kept for it any more.
+    Replaced { name: Arc<str> },
     /// So many events of a topic did not arrive from it, and cannot be sent again.
     Lost { program: u64, name: Arc<str>, topic: Arc<str>, count: u64 },
     /// So many events of this program, which ends, were not received by another one.
@@ -157,6 +162,19 @@ pub enum News {
     Differs { program: u64, name: Arc<str>, topic: Arc<str> },
     /// So many events of this program on a topic were forgotten before all had received them.
     Overflow { topic: Arc<str>, count: u64 },
+}
+
+impl News {
+    /// Number of messages that are lost with it.
+    pub fn lost(&self) -> u64 {
+        match self {
+            News::GivenUp { count, .. }
+            | News::Lost { count, .. }
+            | News::Unreceived { count, .. }
+            | News::Overflow { count, .. } => *count,
+            _ => 0,
+        }
+    }
 }
 
 /// A message of a component of this program.

@@ -1,6 +1,6 @@
 //! When the programs of a network agree that no work is left, and how one leaves.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::peer::Peer;
@@ -10,7 +10,18 @@ use super::{Action, Exchange, News};
 impl Exchange {
     /// True if all other programs have received all events of this one, but for those that were missed for long.
     pub fn is_complete(&self) -> bool {
-        self.lacking().all(|(peer, ..)| !peer.is_awaited(self.now))
+        self.lacking().all(|(peer, ..)| !peer.is_awaited(self.now, self.settings.linger))
+    }
+
+    /// The programs that are waited for since they lack events of this one: their names, the number of these, and
+    /// whether they are there.
+    pub fn awaited(&self) -> Vec<(Arc<str>, u64, bool)> {
+        let mut all: BTreeMap<Arc<str>, (u64, bool)> = BTreeMap::new();
+        for (peer, _, count) in self.lacking().filter(|(peer, ..)| peer.is_awaited(self.now, self.settings.linger)) {
+            let one = all.entry(Arc::clone(&peer.name)).or_insert((0, true));
+            *one = (one.0 + count, one.1 && peer.is_reachable);
+        }
+        all.into_iter().map(|(name, (count, is_there))| (name, count, is_there)).collect()
     }
 
     /// The programs that lack events of this one, with the topic and the number of these.
@@ -57,6 +68,7 @@ impl Exchange {
 
     /// The program leaves the network.
     pub fn leave(&mut self) {
+        self.tell_overflow();
         let unreceived = self.lacking().map(|(peer, topic, count)| {
             let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
             Action::Tell(match self.settings.memory {

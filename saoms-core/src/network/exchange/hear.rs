@@ -85,6 +85,7 @@ impl Exchange {
         }));
         self.go_on(alive);
         self.go_on_reading(alive);
+        self.replace(program);
         // Calls may wait for it, or for one before it.
         self.calls_at = 0;
         self.say_soon();
@@ -99,7 +100,8 @@ impl Exchange {
         if let Some(peer) = self.remove_peer(program) {
             // If it is there again after all, it begins anew.
             self.left.remove(&program);
-            self.actions.push(Action::Tell(News::GivenUp { program, name: peer.name }));
+            let count = self.lacked_by(&peer);
+            self.actions.push(Action::Tell(News::GivenUp { program, name: peer.name, count }));
             self.forget_received();
         }
         true

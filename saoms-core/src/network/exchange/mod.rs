@@ -106,6 +106,10 @@ pub struct Exchange {
     /// The number of the last look at cells, and when cells are due that nobody wants any more.
     looks: u64,
     drop_at: u64,
+    /// The components with which other programs have begun.
+    begun_with: BTreeMap<u64, BTreeSet<String>>,
+    /// The numbers of events that were lost for want of room, and were not told yet.
+    overflow: BTreeMap<Arc<str>, u64>,
     /// The numbers of the newest signs of life, each with its time.
     signs: VecDeque<(u64, u64)>,
     actions: Vec<Action>,
@@ -136,6 +140,8 @@ impl Exchange {
             calls_at: u64::MAX,
             looks: 0,
             drop_at: u64::MAX,
+            begun_with: BTreeMap::new(),
+            overflow: BTreeMap::new(),
             signs: VecDeque::new(),
             actions: Vec::new(),
         };
@@ -145,6 +151,11 @@ impl Exchange {
             exchange.settings.memory = Some(Memory { origin: memory.origin, start: memory.start, ..Memory::default() });
         }
         exchange
+    }
+
+    /// Its settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// What the program has to do, in this order.
@@ -177,10 +188,10 @@ impl Exchange {
         let (component, bytes) = (Arc::clone(component), bytes.into());
         let number = number.map_or(outgoing.last + 1, |number| number.max(outgoing.last + 1));
         if number > outgoing.last + 1 {
-            // Those before it found no room on their way here.
-            let count = number - 1 - outgoing.last + outgoing.forget_before(number);
+            // Those before it found no room on their way here, which was told; these are lost with them.
+            let count = outgoing.forget_before(number);
             outgoing.last = number - 1;
-            self.actions.push(Action::Tell(News::Overflow { topic: Arc::clone(topic), count }));
+            *self.overflow.entry(Arc::clone(topic)).or_default() += count;
         }
         let cells = outgoing.place(&(Arc::clone(&component), key), place.map(cell_of));
         let sent = Sent { number, component, to, key, sent, schema, cause, bytes, cells };
@@ -258,6 +269,7 @@ impl Exchange {
         self.drop_cells(now);
         let next = self.ask(now).min(self.look(now)).min(self.drop_at);
         if now >= self.sign_at {
+            self.tell_overflow();
             self.remember();
             let alive = self.sign_of_life(false);
             self.put_alive(&alive);
@@ -377,21 +389,35 @@ impl Exchange {
             if size <= self.settings.limit {
                 return;
             }
-            let away = self.peers.iter_mut().filter(|(_, peer)| !peer.is_reachable && !peer.is_given_up);
+            let away = self.peers.iter().filter(|(_, peer)| !peer.is_reachable && !peer.is_given_up);
             if let Some((program, peer)) = away.min_by_key(|(_, peer)| peer.heard) {
-                peer.is_given_up = true;
-                let news = News::GivenUp { program: *program, name: Arc::clone(&peer.name) };
-                self.actions.push(Action::Tell(news));
+                let (program, name) = (*program, Arc::clone(&peer.name));
+                let count = self.peers.get(&program).map_or(0, |peer| self.lacked_by(peer));
+                self.peers.get_mut(&program).into_iter().for_each(|peer| peer.is_given_up = true);
+                self.actions.push(Action::Tell(News::GivenUp { program, name, count }));
                 self.forget_received();
                 continue;
             }
             let all = self.outgoing.iter_mut().filter(|(_, outgoing)| events(outgoing));
             let Some((topic, outgoing)) = all.max_by_key(|(_, outgoing)| outgoing.size) else { return };
             let count = outgoing.forget_before(outgoing.oldest() + 1);
-            self.actions.push(Action::Tell(News::Overflow { topic: Arc::clone(topic), count }));
+            *self.overflow.entry(Arc::clone(topic)).or_default() += count;
             if count == 0 {
                 return;
             }
         }
+    }
+
+    /// Tells which events were lost for want of room: all since the last time together, since they can be many.
+    fn tell_overflow(&mut self) {
+        let lost = std::mem::take(&mut self.overflow).into_iter().filter(|(_, count)| *count > 0);
+        self.actions.extend(lost.map(|(topic, count)| Action::Tell(News::Overflow { topic, count })));
+    }
+
+    /// Number of the events that a program lacks.
+    fn lacked_by(&self, peer: &Peer) -> u64 {
+        let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
+        let lacks = events.filter_map(|(topic, outgoing)| Some((outgoing.last + 1).saturating_sub(peer.needs(topic)?)));
+        lacks.sum()
     }
 }

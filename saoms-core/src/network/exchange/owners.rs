@@ -1,7 +1,15 @@
 //! Which program each component runs in: one that is killed begins anew in another program, and none runs twice.
 
+use std::sync::Arc;
+
 use super::Exchange;
 use super::action::{Action, News};
+use super::hear::MOST_PROGRAMS;
+use super::peer::Peer;
+use super::wire::Begins;
+
+/// Components that a program begins with, at most: more is no fleet.
+const MOST_COMPONENTS: usize = 65_536;
 
 /// The program that a component of another one runs in.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +23,47 @@ pub(super) struct Owner {
 }
 
 impl Exchange {
+    /// A program is about to begin with these components, or runs them.
+    pub fn note_begin(&mut self, begins: Begins) {
+        if begins.program == self.settings.program || begins.components.len() > MOST_COMPONENTS {
+            return;
+        }
+        if self.begun_with.len() >= MOST_PROGRAMS && !self.begun_with.contains_key(&begins.program) {
+            let peers = &self.peers;
+            self.begun_with.retain(|program, _| peers.contains_key(program));
+            if self.begun_with.len() >= MOST_PROGRAMS {
+                return;
+            }
+        }
+        self.begun_with.insert(begins.program, begins.components.into_iter().collect());
+        if self.peers.contains_key(&begins.program) {
+            self.replace(begins.program);
+        }
+    }
+
+    /// A program has begun: those that were there before it with components of it are over, or it would not have, and
+    /// nothing is kept for them.
+    pub(super) fn replace(&mut self, program: u64) {
+        let Some((components, since)) =
+            self.begun_with.get(&program).zip(self.peers.get(&program).map(|peer| peer.since))
+        else {
+            return;
+        };
+        let is_over = |other: &u64, peer: &Peer| {
+            let others = self.begun_with.get(other).filter(|_| peer.since < since);
+            others.is_some_and(|others| !others.is_disjoint(components))
+        };
+        let over = self.peers.iter().filter(|(other, peer)| is_over(other, peer)).map(|(other, _)| *other);
+        let over: Vec<u64> = over.collect();
+        for other in over {
+            let Some(peer) = self.peers.get_mut(&other).filter(|peer| !peer.is_given_up) else { continue };
+            peer.is_given_up = true;
+            let name = Arc::clone(&peer.name);
+            self.actions.push(Action::Tell(News::Replaced { name }));
+        }
+        self.forget_received();
+    }
+
     /// True if the messages of a component count that come from this program: the one in which it began last. A program
     /// that was killed and begins anew is heard before the old one is missed.
     pub(super) fn is_of(&mut self, program: u64, component: &str) -> bool {

@@ -8,9 +8,6 @@ use super::incoming::Incoming;
 use super::memory::KnownReader;
 use super::wire::Vote;
 
-/// A program is missed for long after so many times its patience.
-const LONG: u64 = 10;
-
 /// Another program of the network.
 #[derive(Debug)]
 pub(super) struct Peer {
@@ -74,9 +71,9 @@ impl Peer {
         }
     }
 
-    /// True if this program waits for it when it ends: it is there, or has not been missed for long.
-    pub(super) fn is_awaited(&self, now: u64) -> bool {
-        now.saturating_sub(self.heard) <= self.patience.saturating_mul(LONG)
+    /// True if a program that ends waits for it, and lingers for so long: it is there, or was heard within that time.
+    pub(super) fn is_awaited(&self, now: u64, linger: u64) -> bool {
+        self.is_reachable || now.saturating_sub(self.heard) <= linger
     }
 
     /// The number of the first message of a topic that it may ask for; `None` if it asks for none.

@@ -291,6 +291,20 @@ pub struct AroundState {
     pub bytes: Vec<u8>,
 }
 
+/// What a program says before its components begin, to all others; and the answer of one in which some of them run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(name = "saoms_msgs/msg/Begins")]
+pub struct Begins {
+    /// The program that says it.
+    pub program: u64,
+    /// Its name for people.
+    pub name: String,
+    /// Time after which it is missed, in milliseconds.
+    pub patience: u64,
+    /// The components that are about to begin; of an answer, those among them that run there.
+    pub components: Vec<String>,
+}
+
 /// A call of an operation of a component, to the program that has it; or, with the number 0, a heartbeat for its
 /// hardware.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]

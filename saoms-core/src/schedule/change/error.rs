@@ -27,8 +27,32 @@ pub enum ChangeError {
         /// Its failure.
         failure: Failure,
     },
+    /// A component refuses new values of live properties.
+    RefusesValues {
+        /// Its path.
+        component: String,
+        /// Its class.
+        class: String,
+        /// Its failure.
+        failure: Failure,
+    },
+    /// It cannot be done while the fleet runs, for these reasons.
+    Refused(Vec<String>),
+    /// Components would lose their state, which nobody allowed.
+    LosesState {
+        /// Those whose classes save none.
+        unsaved: Vec<String>,
+        /// Those that become one of another class or site.
+        anew: Vec<String>,
+    },
     /// The fleet has no such component.
     Unknown(String),
+    /// Another change is being made.
+    Busy,
+    /// Somebody changed the fleet while this change waited for components that leave.
+    Meanwhile,
+    /// Whoever asked for it took it back.
+    Withdrawn,
     /// The run ends.
     Ending,
 }
@@ -41,7 +65,14 @@ impl ChangeError {
             ChangeError::Failed { library, failure, .. } => {
                 format!("{failure}{}", library.as_deref().map(in_library).unwrap_or_default())
             }
-            ChangeError::Unknown(_) | ChangeError::Ending => self.to_string(),
+            ChangeError::RefusesValues { failure, .. } => failure.to_string(),
+            ChangeError::Refused(_)
+            | ChangeError::LosesState { .. }
+            | ChangeError::Unknown(_)
+            | ChangeError::Busy
+            | ChangeError::Meanwhile
+            | ChangeError::Withdrawn
+            | ChangeError::Ending => self.to_string(),
         }
     }
 }
@@ -54,7 +85,25 @@ impl fmt::Display for ChangeError {
                 let reason = self.reason();
                 write!(formatter, "component `{component}` of class `{class}` could not start: {reason}")
             }
+            ChangeError::RefusesValues { component, class, failure } => {
+                write!(formatter, "component `{component}` of class `{class}` refuses its new values: {failure}")
+            }
+            ChangeError::Refused(reasons) => formatter.write_str(&reasons.join("; ")),
+            ChangeError::LosesState { unsaved, anew } => {
+                let of = |components: &[String], one: &str, many: &str| {
+                    let why = if components.len() == 1 { one } else { many };
+                    let told = || format!("the state of `{}` would be lost: {why}", components.join("`, `"));
+                    (!components.is_empty()).then(told)
+                };
+                let unsaved = of(unsaved, "its class saves none", "their classes save none");
+                let anew =
+                    of(anew, "it begins anew in another class or site", "they begin anew in another class or site");
+                formatter.write_str(&unsaved.into_iter().chain(anew).collect::<Vec<_>>().join("; "))
+            }
             ChangeError::Unknown(component) => write!(formatter, "the fleet has no component `{component}`"),
+            ChangeError::Busy => formatter.write_str("another change of the fleet is being made: ask again"),
+            ChangeError::Meanwhile => formatter.write_str("the fleet changed meanwhile: ask again"),
+            ChangeError::Withdrawn => formatter.write_str("the change was taken back before it was made"),
             ChangeError::Ending => formatter.write_str("the run ends"),
         }
     }

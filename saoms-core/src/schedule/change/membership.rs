@@ -1,15 +1,22 @@
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
+use saoms_api::{Cause, Level};
 use saoms_lang::assembly::ComponentSpec;
 
+use super::leaving::Leaving;
+use super::live::changed;
 use super::takeover::{Outgoing, Predecessor, Takeover};
+use super::updating::Updated;
 use crate::journal::ComponentName;
 use crate::observe::Occurrence;
+use crate::report::{Label, PartOfFleet};
 use crate::schedule::component::body::Body;
+use crate::schedule::component::estate::Estate;
 use crate::schedule::component::stored::Stored;
 use crate::schedule::engine::lifecycle::Request;
-use crate::schedule::engine::memory::SlotMemory;
+use crate::schedule::engine::memory::{SlotMemory, value_hash};
 use crate::schedule::engine::slot::{NEVER, PendingRequest, Slot, SlotState, TaskPolicy};
 use crate::schedule::engine::trace::TraceStep;
 use crate::schedule::engine::{Engine, RunPhase};
@@ -20,6 +27,25 @@ impl Engine {
     /// The specifications of the fleet by their numbers.
     pub(super) fn specs(&self) -> Vec<Option<Arc<ComponentSpec>>> {
         self.slots.iter().map(|slot| slot.is_member().then(|| Arc::clone(&slot.spec))).collect()
+    }
+
+    /// What of a wanted fleet the networks of the program hinder: it takes part in those that it had at its start, and
+    /// other programs know its components from theirs.
+    pub(super) fn beyond_its_networks(&self, part: Option<&PartOfFleet>, wanted: &[ComponentSpec]) -> Vec<String> {
+        let mut reasons: Vec<String> = Vec::new();
+        let members = self.slots.iter().filter(|slot| slot.is_member());
+        let known: BTreeSet<&str> = members.filter_map(|slot| slot.spec.url()).collect();
+        let urls: BTreeSet<&str> = wanted.iter().filter_map(ComponentSpec::url).collect();
+        for url in urls.difference(&known).filter(|url| !self.networks.has(url)) {
+            reasons.push(format!("the program takes part in no network at `{url}`: it joins networks at its start"));
+        }
+        let fleet = |part: Option<&PartOfFleet>| part.map(|part| (part.node.clone(), part.fleet.clone()));
+        if fleet(part) != fleet(self.networks.elsewhere.part()) {
+            let reason = "other programs run a part of the fleet, and know its components, their classes and their \
+                          nodes from their start: restart all of them with the new composites";
+            reasons.push(reason.to_owned());
+        }
+        reasons
     }
 
     /// The time at which a change happens.
@@ -59,6 +85,10 @@ impl Engine {
                 Some(known) if self.slots[*known as usize].is_member() => Stored::default(),
                 _ => self.stored_of(&spec.path),
             };
+            // An emergency stop holds for whoever has the path.
+            let before = self.numbers.get(spec.path.as_str()).copied();
+            let is_stopped = before.is_some_and(|before| self.slots[before as usize].is_stopped());
+            let spec = before.map_or_else(|| Arc::clone(&spec), |before| self.still_stopped(before, Arc::clone(&spec)));
             let network = self.networks.of(&spec);
             if let Some(slot) = self.slots.get_mut(number as usize) {
                 slot.network = network;
@@ -71,6 +101,7 @@ impl Engine {
             }
             let mut slot = Slot::new(number, spec, stored);
             slot.network = network;
+            slot.set_stopped(is_stopped);
             names.push(Arc::clone(&slot.name));
             self.numbers.insert(Arc::clone(&slot.name), number);
             self.slots.push(slot);
@@ -80,6 +111,15 @@ impl Engine {
         self.set_apart();
         if self.phase == RunPhase::Starting {
             self.journal_capacity /= self.slots.len().max(1);
+        }
+    }
+
+    /// Leaves to new components what others kept.
+    pub(super) fn leave_to(&mut self, numbers: &[u32], estate: &Estate) {
+        for &number in numbers {
+            if let Some(body) = &mut self.slots[number as usize].body {
+                body.part.estate = estate.clone();
+            }
         }
     }
 
@@ -136,9 +176,40 @@ impl Engine {
 
     /// Takes a body out, as for a call.
     pub(super) fn take(&mut self, number: u32) -> Option<Box<Body>> {
-        let body = self.slots[number as usize].body.take()?;
+        let slot = &mut self.slots[number as usize];
+        let body = slot.body.take()?;
+        // No code of it runs, which could hang.
+        slot.out_since = NEVER;
         self.out += 1;
         Some(body)
+    }
+
+    /// Notes that code of a component runs whose body is in the hands of a change: hardware is stopped if it does not
+    /// return.
+    pub(super) fn enter_code(&mut self, number: u32) {
+        self.slots[number as usize].out_since = self.clock.now_without_pause();
+    }
+
+    /// Notes that it has returned.
+    pub(super) fn leave_code(&mut self, number: u32) {
+        self.slots[number as usize].out_since = NEVER;
+    }
+
+    /// Gives a component another body in place of the one whose code does not return on a thread that is left behind,
+    /// and stops its hardware.
+    pub(super) fn leave_behind(&mut self, number: u32) {
+        self.stops.request_of(number);
+        let slot = &mut self.slots[number as usize];
+        if slot.state == SlotState::Abandoned {
+            return;
+        }
+        slot.cancelled.store(true, Ordering::Relaxed);
+        slot.cancelled = Arc::default();
+        // Its thread hangs still, and nobody is told otherwise.
+        (slot.out_since, slot.hangs_since) = (NEVER, NEVER);
+        let body = slot.empty_body(number, Stored::default());
+        slot.state = SlotState::Failed;
+        self.put_back(number, body);
     }
 
     /// Gives a body back.
@@ -161,12 +232,36 @@ impl Engine {
         }
     }
 
+    /// Lets a component that did not run start again.
+    pub(super) fn let_go(&mut self, number: u32, now: u64) {
+        let slot = &mut self.slots[number as usize];
+        slot.held = false;
+        if slot.is_alive() {
+            self.resume(number, now);
+        } else if slot.is_member() && std::mem::take(&mut slot.waiting) {
+            self.enqueue(number, now);
+        }
+    }
+
+    /// Gives a component its name again, which one of another class had in a change that is undone. It hears of an
+    /// emergency stop and of a release that came meanwhile.
+    pub(super) fn take_place_again(&mut self, number: u32, now: u64) {
+        let name = Arc::clone(&self.slots[number as usize].name);
+        let other = self.numbers.insert(name, number).map(|other| &self.slots[other as usize]);
+        let is_stopped = self.slots[number as usize].is_stopped();
+        if let Some(other) = other.map(Slot::is_stopped).filter(|other| *other != is_stopped) {
+            self.tell_stopped(&[number], other, Cause::default(), now);
+        }
+    }
+
     /// Removes a component from the fleet.
     pub(super) fn forget(&mut self, number: u32) {
+        self.forget_take_back(number);
         let slot = &mut self.slots[number as usize];
         if slot.state != SlotState::Abandoned {
             slot.state = SlotState::Removed;
             slot.memory = SlotMemory::default();
+            slot.leaving = Leaving::Not;
             (slot.entry, slot.pending, slot.sees_work) = (NEVER, PendingRequest::None, None);
             let now = slot.last_due.unwrap_or_default();
             self.note_differs(number, now);
@@ -197,7 +292,7 @@ impl Engine {
         if is_active && slot.policy.periodic {
             let recalled = self.recalled_due(number, now);
             let slot = &mut self.slots[number as usize];
-            slot.due = recalled.unwrap_or(now.saturating_add(slot.policy.delay));
+            (slot.due, slot.in_delay) = recalled.unwrap_or((now.saturating_add(slot.policy.delay), true));
             let when = slot.next_time();
             match slot.pending {
                 PendingRequest::None => {
@@ -219,6 +314,7 @@ impl Engine {
         now: u64,
     ) -> Option<Outgoing> {
         let mut body = self.slots[number as usize].body.take()?;
+        self.forget_take_back(number);
         let outgoing = body.inherit(&mut self.bus, predecessor);
         self.release(number, &mut body, now);
         // What the new instance saves is not what the earlier one did.
@@ -230,6 +326,7 @@ impl Engine {
         let slot = &mut self.slots[number as usize];
         let period = slot.policy.period;
         slot.renew(Arc::clone(&body.part.spec));
+        slot.forget_other_values();
         body.part.period = slot.policy.period;
         slot.body = Some(body);
         let (heartbeats, elsewhere) = (self.heartbeats_of(number), self.heartbeats_elsewhere(number));
@@ -239,6 +336,7 @@ impl Engine {
         }
         slot.held = false;
         slot.statistics.replaced += 1;
+        self.note_differs(number, now);
         self.emit(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });
         if let Some(vote) = vote {
             self.note_vote(number, vote, now);
@@ -257,14 +355,46 @@ impl Engine {
         Some(outgoing)
     }
 
+    /// Lets a component that has taken new values go on with them.
+    pub(super) fn commit_update(&mut self, updated: Updated, now: u64) {
+        let Updated { number, body, after, properties, .. } = updated;
+        self.forget_take_back(number);
+        // One that does not run may have been stopped meanwhile.
+        let after = if body.is_some() { after } else { self.still_stopped(number, after) };
+        let slot = &mut self.slots[number as usize];
+        // What an operator set before is over.
+        slot.memory.set.retain(|set| !properties.contains(&set.property));
+        slot.spec = Arc::clone(&after);
+        slot.is_wanted = None;
+        match body {
+            Some(mut body) => {
+                body.part.lasting.touch();
+                self.note_saved(&body.part, false, now);
+                self.return_unchanged(number, body, now);
+            }
+            None => {
+                if let Some(body) = &mut self.slots[number as usize].body {
+                    body.part.spec = after;
+                }
+            }
+        }
+        self.note_differs(number, now);
+        let text = format!("has new values: {}", properties.join(", "));
+        self.emit(now, number, Occurrence::Log { level: Level::Info, text });
+    }
+
     /// Sets the specification that a component which does not run has from its next start on.
-    pub(super) fn await_spec(&mut self, number: u32, spec: Arc<ComponentSpec>, now: u64) {
+    pub(super) fn await_spec(&mut self, number: u32, spec: Arc<ComponentSpec>, estate: Estate, now: u64) {
+        self.forget_take_back(number);
+        let spec = self.still_stopped(number, spec);
         let slot = &mut self.slots[number as usize];
         slot.renew(Arc::clone(&spec));
+        slot.forget_other_values();
         let has_failed = slot.state == SlotState::Failed;
         if let Some(body) = &mut slot.body {
-            (body.part.spec, body.part.period) = (spec, slot.policy.period);
+            (body.part.spec, body.part.estate, body.part.period) = (spec, estate, slot.policy.period);
         }
+        self.note_differs(number, now);
         if has_failed {
             self.request(number, Request::Schedule { lasting: NEVER }, now);
         }
@@ -276,7 +406,18 @@ impl Slot {
     pub(super) fn renew(&mut self, spec: Arc<ComponentSpec>) {
         self.policy = TaskPolicy::of(&spec);
         self.hears_stops = hears_stops(&spec);
+        self.label = Label::of(&spec);
+        self.is_wanted = None;
         self.spec = spec;
+    }
+
+    /// Forgets what operators have set and the specification does not say any more.
+    fn forget_other_values(&mut self) {
+        let spec = &self.spec;
+        self.memory.set.retain(|set| {
+            let changed = changed(spec, &set.property, &set.value);
+            changed.is_ok_and(|changed| value_hash(&changed, &set.property) == value_hash(spec, &set.property))
+        });
     }
 
     /// Reuses the slot of a removed component that returns.

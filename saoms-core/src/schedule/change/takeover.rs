@@ -1,18 +1,23 @@
-use std::sync::{Arc, mpsc};
-use std::thread;
+use std::sync::Arc;
 
 use saoms_api::host::contain::contained;
-use saoms_api::host::{DynComponent, SharedMessage, format_duration};
+use saoms_api::host::{DynComponent, SharedMessage};
 use saoms_api::{Failure, Saved};
 use saoms_lang::assembly::ComponentSpec;
 
+use super::apart::{Unreturned, drop_apart, within, within_member};
 use crate::bus::{Bus, TopicId, TopicReader};
 use crate::journal::Recorder;
-use crate::schedule::component::body::{Body, Part};
+use crate::schedule::component::body::Body;
+use crate::schedule::component::estate::Estate;
 use crate::schedule::component::lasting::Lasting;
 use crate::schedule::component::library::with_library;
+use crate::schedule::component::part::Part;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
+
+/// The reason of a takeover from an instance that is gone.
+const ENDED: &str = "it has just ended";
 
 /// The outcome of a replacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +30,9 @@ pub enum Takeover {
     /// scheduled now.
     Awaited,
 }
+
+/// The earlier instance of a takeover and its outcome, or why it was refused.
+pub(crate) type TakenOver = Result<(Predecessor, Takeover), Refusal>;
 
 /// Reasons of a takeover that was refused. The earlier instance continues.
 #[derive(Debug)]
@@ -44,9 +52,10 @@ pub(crate) struct Predecessor {
     inboxes: [Vec<Vec<SharedMessage>>; 2],
 }
 
-/// Topics and subscriptions of an instance.
+/// Topics and subscriptions of an instance, and what was left to it.
 struct Endpoints {
     spec: Arc<ComponentSpec>,
+    estate: Estate,
     publishers: Vec<TopicId>,
     subscriptions: Vec<TopicReader>,
     recorder: Recorder,
@@ -57,6 +66,14 @@ struct Endpoints {
 pub(crate) struct Outgoing {
     instance: Option<Box<dyn DynComponent>>,
     stops: Vec<Arc<RegisteredStop>>,
+    name: Arc<str>,
+}
+
+impl Outgoing {
+    /// The path of its component.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
 }
 
 impl Drop for Outgoing {
@@ -70,34 +87,67 @@ impl Drop for Outgoing {
 
 impl Body {
     /// Replaces the present instance: the new one is constructed, the present one [saves](saoms_api::Component::save)
-    /// its state, and the new one initializes and restores it. After an error the present one stays.
+    /// its state, and the new one initializes and restores it. After an error the present one stays; its body comes
+    /// back later where its own code has not returned.
     pub(crate) fn take_over(
-        &mut self,
+        self: Box<Body>,
         shared: &Arc<Shared>,
         spec: Arc<ComponentSpec>,
-    ) -> Result<(Predecessor, Takeover), Refusal> {
-        let successor = self.successor(spec);
+        estate: Estate,
+    ) -> (Option<Box<Body>>, TakenOver) {
+        let mut successor = self.successor(spec);
+        successor.part.estate = estate;
         let construct = |body: &mut Body, _: &Arc<Shared>| body.construct();
-        let mut successor = successor.within(shared, "the constructor", construct).map_err(Refusal::Failed)?;
-        let Some(present) = &mut self.instance else {
-            return Err(Refusal::NotNow("it has just ended".to_owned()));
+        let successor = match successor.of_new(("the constructor", false), shared, construct) {
+            Ok(successor) => successor,
+            Err(failure) => return (Some(self), Err(Refusal::Failed(failure))),
         };
-        let saved = match contained(|| present.save()) {
-            Ok(Ok(saved)) => saved,
-            refused => {
+        if self.instance.is_none() {
+            successor.withdraw(shared);
+            return (Some(self), Err(Refusal::NotNow(ENDED.to_owned())));
+        }
+        let (mut present, saved) = match self.saved(shared) {
+            (Some(present), Ok(saved)) => (present, saved),
+            (present, refused) => {
                 successor.withdraw(shared);
-                return Err(refused.map_or_else(Refusal::Failed, |not_now| {
-                    let spec = &self.part.spec;
-                    Refusal::NotNow(not_now.err().map(|failure| with_library(spec, failure)).unwrap_or_default())
-                }));
+                return (present, Err(refused.err().unwrap_or_else(|| Refusal::NotNow(ENDED.to_owned()))));
             }
         };
-        let (is_nothing, saved) = (saved.is_nothing(), Arc::new(saved));
+        let result = present.give_over(successor, Arc::new(saved), shared);
+        (Some(present), result)
+    }
+
+    /// The state that the present instance saves.
+    fn saved(self: Box<Body>, shared: &Arc<Shared>) -> (Option<Box<Body>>, Result<Saved, Refusal>) {
+        let save = |body: &mut Body, _: &Arc<Shared>| match &mut body.instance {
+            Some(present) => contained(|| present.save()),
+            None => Ok(Err(Failure::new(ENDED))),
+        };
+        let goes_on = |body: Box<Body>, _: Result<Result<Saved, Failure>, Failure>, shared: &Arc<Shared>| {
+            let mut engine = shared.lock();
+            engine.return_unchanged(body.part.index, body, shared.clock.now());
+            shared.release(engine);
+        };
+        match within_member(shared, ("`save`", shared.settings.grace), self, save, goes_on) {
+            Ok((body, Ok(Ok(saved)))) => (Some(body), Ok(saved)),
+            Ok((body, Ok(Err(not_now)))) => {
+                let why = with_library(&body.part.spec, not_now);
+                (Some(body), Err(Refusal::NotNow(why)))
+            }
+            Ok((body, Err(panic))) => (Some(body), Err(Refusal::Failed(panic))),
+            Err(Unreturned { body, failure }) => (body, Err(Refusal::NotNow(failure.message().to_owned()))),
+        }
+    }
+
+    /// Lets a new instance begin from the state of the present one, and take its place.
+    fn give_over(&mut self, successor: Box<Body>, saved: Arc<Saved>, shared: &Arc<Shared>) -> TakenOver {
+        let is_nothing = saved.is_nothing();
         let begin = move |body: &mut Body, shared: &Arc<Shared>| body.begin_instead(shared, &saved);
-        successor = successor.within(shared, "`initialize` or `restore`", begin).map_err(Refusal::Failed)?;
+        let mut successor =
+            successor.of_new(("`initialize` or `restore`", true), shared, begin).map_err(Refusal::Failed)?;
         let endpoints = Endpoints::take(&mut self.part, &mut successor.part);
         let (Some(instance), new) = (self.instance.take(), successor.instance.take()) else {
-            return Err(Refusal::NotNow("it has just ended".to_owned()));
+            return Err(Refusal::NotNow(ENDED.to_owned()));
         };
         self.instance = new;
         let inboxes = [std::mem::take(&mut self.inboxes), std::mem::take(&mut self.reactions)];
@@ -118,34 +168,42 @@ impl Body {
         Box::new(body)
     }
 
-    /// Runs code of a new instance on a thread of its own, and gives it back if it returns within the time that
-    /// components have to end. Otherwise the thread is left behind with it.
-    fn within(
-        mut self: Box<Body>,
+    /// Runs code of a new instance within the time that components have to end. One whose code fails, or does not
+    /// return, is no part of the fleet. `moves` says whether the code may move hardware.
+    fn of_new(
+        self: Box<Body>,
+        (what, moves): (&str, bool),
         shared: &Arc<Shared>,
-        what: &str,
         code: impl FnOnce(&mut Body, &Arc<Shared>) -> Result<(), Failure> + Send + 'static,
     ) -> Result<Box<Body>, Failure> {
-        let (sender, receiver) = mpsc::channel();
-        let apart = Arc::clone(shared);
-        let run = move || {
-            let result = code(&mut self, &apart);
-            if let Err(mpsc::SendError((body, _))) = sender.send((self, result)) {
-                body.withdraw(&apart);
+        let (index, mut body) = (self.part.index, self);
+        let apart = shared.lock().goes_apart(&mut body);
+        let late = |body: Box<Body>, _: Result<(), Failure>, shared: &Arc<Shared>| body.end_late(shared);
+        match within(shared, (what, shared.settings.grace), body, code, late) {
+            Ok((mut body, result)) => {
+                shared.lock().returns_from_apart(&mut body);
+                match result {
+                    Ok(()) => Ok(body),
+                    Err(failure) => {
+                        body.withdraw(shared);
+                        Err(failure)
+                    }
+                }
             }
-        };
-        thread::Builder::new()
-            .name("saoms-change".to_owned())
-            .spawn(run)
-            .map_err(|error| Failure::new(format!("the system cannot create a thread: {error}")))?;
-        let limit = shared.settings.grace;
-        match receiver.recv_timeout(limit) {
-            Ok((body, Ok(()))) => Ok(body),
-            Ok((body, Err(failure))) => {
+            Err(Unreturned { body: Some(body), failure }) => {
                 body.withdraw(shared);
                 Err(failure)
             }
-            Err(_) => Err(Failure::new(format!("{what} has not returned within {}", format_duration(limit)))),
+            Err(Unreturned { body: None, failure }) => {
+                let mut engine = shared.lock();
+                engine.take_off(apart);
+                if moves {
+                    // It may have moved hardware already, which is that of the present one, too.
+                    engine.stops.request_of(index);
+                }
+                shared.release(engine);
+                Err(failure)
+            }
         }
     }
 
@@ -162,19 +220,44 @@ impl Body {
     }
 
     /// Drops a new instance that takes nothing over, with its topics.
-    fn withdraw(mut self: Box<Body>, shared: &Shared) {
-        self.discard();
-        let bus = &mut shared.lock().bus;
-        for topic in self.part.publishers {
-            bus.unpublish(topic);
-        }
-        for subscription in self.part.subscriptions {
-            bus.unsubscribe(subscription);
+    pub(super) fn withdraw(mut self: Box<Body>, shared: &Shared) {
+        self.leave_bus(shared);
+        let (instance, stops) = (self.instance.take(), std::mem::take(&mut self.part.stops));
+        if instance.is_some() || !stops.is_empty() {
+            let name = Arc::clone(&self.part.name);
+            drop_apart(shared, vec![Outgoing { instance, stops, name }]);
         }
     }
 
-    /// Commits the takeover: the new instance gets the read positions of the earlier one; its other subscriptions are
-    /// released. The earlier one is given back, to be dropped where nobody waits for it.
+    /// The same on a thread that was left behind, once its code has returned. Its hardware is stopped before, unless
+    /// another instance moves that by now: it was stopped when the code was left behind.
+    pub(super) fn end_late(mut self: Box<Body>, shared: &Shared) {
+        if !shared.look(|engine| engine.has_other_instance(&self.part)) {
+            shared.stops.request(&self.part.stops);
+        }
+        self.leave_bus(shared);
+        self.discard();
+    }
+
+    /// Takes it off all topics, unless that was done when it was left behind.
+    fn leave_bus(&mut self, shared: &Shared) {
+        let mut engine = shared.lock();
+        let is_there = engine.returns_from_apart(self);
+        let part = &mut self.part;
+        for topic in part.publishers.drain(..).filter(|_| is_there) {
+            engine.bus.unpublish(topic);
+        }
+        for reader in part.subscriptions.drain(..).chain(part.kept.drain(..)).filter(|_| is_there) {
+            let topic = engine.bus.topic_of(&reader);
+            engine.bus.unsubscribe(reader);
+            engine.tell_interest(topic);
+        }
+        shared.release(engine);
+    }
+
+    /// Commits the takeover: the new instance gets the read positions of the earlier one, with the regions that it has
+    /// set; its other subscriptions are released. The earlier one is given back, to be dropped where nobody waits for
+    /// it.
     pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
         // The hardware goes on: it is the new instance that stops it from now on.
         let Predecessor { instance, endpoints, stops, inboxes } = predecessor;
@@ -184,7 +267,11 @@ impl Body {
         for fresh in &mut self.part.subscriptions {
             let topic = bus.topic_of(fresh);
             if let Some(place) = subscriptions.iter().position(|old| bus.topic_of(old) == topic) {
+                let region = bus.region(fresh);
                 std::mem::swap(fresh, &mut subscriptions[place]);
+                if region.is_some() {
+                    bus.set_region(fresh, region, queue.unwrap_or(Some(1)));
+                }
                 bus.rewind(fresh);
                 queue.into_iter().for_each(|queue| bus.resize(fresh, queue));
                 let idle = subscriptions.swap_remove(place);
@@ -200,14 +287,15 @@ impl Body {
         self.give_unread(bus);
         self.part.collection.reset();
         self.part.held = false;
-        Outgoing { instance: Some(instance), stops }
+        Outgoing { instance: Some(instance), stops, name: Arc::clone(&self.part.name) }
     }
 
     /// Undoes the takeover. The new instance is given back, to be dropped where nobody waits for it.
     pub(crate) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
         let part = &mut self.part;
         let stops = std::mem::replace(&mut part.stops, predecessor.stops);
-        let outgoing = Outgoing { instance: self.instance.replace(predecessor.instance), stops };
+        let (instance, name) = (self.instance.replace(predecessor.instance), Arc::clone(&part.name));
+        let outgoing = Outgoing { instance, stops, name };
         part.publishers.drain(..).for_each(|topic| bus.unpublish(topic));
         for subscription in part.subscriptions.drain(..).chain(part.kept.drain(..)) {
             bus.unsubscribe(subscription);
@@ -217,8 +305,8 @@ impl Body {
         part.vote = None;
         part.collection.reset();
         part.held = false;
-        let Endpoints { spec, publishers, subscriptions, recorder } = predecessor.endpoints;
-        (part.spec, part.publishers) = (spec, publishers);
+        let Endpoints { spec, estate, publishers, subscriptions, recorder } = predecessor.endpoints;
+        (part.spec, part.estate, part.publishers) = (spec, estate, publishers);
         (part.subscriptions, part.recorder) = (subscriptions, recorder);
         [self.inboxes, self.reactions] = predecessor.inboxes;
         self.fit_inboxes();
@@ -239,6 +327,7 @@ impl Endpoints {
         part.collection.reset();
         Endpoints {
             spec: std::mem::replace(&mut part.spec, Arc::clone(&successor.spec)),
+            estate: std::mem::replace(&mut part.estate, std::mem::take(&mut successor.estate)),
             publishers: std::mem::replace(&mut part.publishers, std::mem::take(&mut successor.publishers)),
             subscriptions: std::mem::replace(&mut part.subscriptions, std::mem::take(&mut successor.subscriptions)),
             recorder: std::mem::replace(&mut part.recorder, std::mem::take(&mut successor.recorder)),

@@ -4,9 +4,11 @@ use saoms_api::host::TARGET_SHIFT;
 use saoms_api::host::{Invocation, ServiceCall, cdr};
 use saoms_api::{CallError, Failure};
 
-use super::body::{Body, Job, Part};
+use super::body::{Body, Job};
 use super::effects;
+use super::part::Part;
 use super::remote::call_elsewhere;
+use super::web::call_web;
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::engine::slot::NEVER;
@@ -23,6 +25,9 @@ pub(crate) fn call(
     reference: u32,
     call: &mut dyn ServiceCall,
 ) -> Result<(), CallError> {
+    if caller.apart.is_some() {
+        shared.look(|engine| engine.may_call(caller))?;
+    }
     let place = reference & ((1 << TARGET_SHIFT) - 1);
     let Some(wire) = caller.spec.references.get(place as usize) else {
         return Err(CallError::NotWired { reference: "(a handle that `Context::reference` did not give)".to_owned() });
@@ -49,11 +54,15 @@ pub(super) fn call_now(
     };
     let number = (reference >> TARGET_SHIFT) as usize;
     let Some(target) = wire.targets.get(number) else {
-        let Some(target) = wire.elsewhere.get(number - wire.targets.len()) else {
+        let number = number - wire.targets.len();
+        if let Some(target) = wire.elsewhere.get(number) {
+            let (wire, target) = (wire.clone(), target.clone());
+            return call_elsewhere(shared, caller, (&wire, &target), reference, call);
+        }
+        let Some(target) = wire.web.get(number - wire.elsewhere.len()) else {
             return Err(CallError::NotWired { reference: wire.reference.clone() });
         };
-        let (wire, target) = (wire.clone(), target.clone());
-        return call_elsewhere(shared, caller, (&wire, &target), reference, call);
+        return call_web(shared, caller, (target, wire.deadline), call);
     };
     let provider = target.component as u32;
     let mut engine = shared.lock();
@@ -118,6 +127,7 @@ fn task(shared: &Shared, caller: &Part, provider: u32, call: &mut dyn ServiceCal
         drop(engine);
         return call.reply(&cdr::encode(&scheduled));
     };
+    engine.may_call(caller)?;
     engine.note_caller(caller.index);
     engine.request(provider, request, now);
     shared.release(engine);
@@ -131,9 +141,15 @@ impl Engine {
         declaration.offers().any(|offered| offered.name == service && offered.is_of_host())
     }
 
+    /// Judges whether a component may call others.
+    fn may_call(&self, caller: &Part) -> Result<(), CallError> {
+        self.may_act(caller).map_err(|failure| CallError::Failed { provider: String::new(), failure })
+    }
+
     /// Takes a component's body to serve a call. An instance that is not committed serves only others of the same
     /// change.
     fn begin_call(&mut self, index: u32, caller: &Part) -> Result<Box<Body>, CallError> {
+        self.may_call(caller)?;
         let slot = &mut self.slots[index as usize];
         let provider = || slot.name.to_string();
         if caller.call_depth >= MAX_DEPTH {
@@ -143,12 +159,12 @@ impl Engine {
         if !slot.is_alive() {
             return Err(CallError::NotRunning { provider: provider() });
         }
-        let Some(body) = slot.body.take_if(|_| (caller.held || !slot.held) && caller.now >= slot.busy_until) else {
+        let Some(mut body) = slot.body.take_if(|_| (caller.held || !slot.held) && caller.now >= slot.busy_until) else {
             return Err(CallError::Busy { provider: provider() });
         };
-        slot.out_since = caller.now;
+        self.slots[index as usize].out_since = self.begin_of_code(caller.now);
         self.out += 1;
-        self.note_code(index, &body);
+        self.note_code(index, &mut body);
         self.note_caller(caller.index);
         Ok(body)
     }
@@ -160,6 +176,7 @@ impl Engine {
             return;
         }
         self.note_return();
+        self.slots[index as usize].memory.note_end_of_code();
         if let Some(failure) = panic {
             self.fail(index, &mut body, Job::Execute, &failure, now);
             self.slots[index as usize].body = Some(body);

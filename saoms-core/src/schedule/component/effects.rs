@@ -10,8 +10,8 @@ use saoms_api::extension::ServiceEffects;
 use saoms_api::host::{Operation, ServiceCall};
 use saoms_lang::assembly::Wire;
 
-use super::body::Part;
 use super::call::call_now;
+use super::part::Part;
 use crate::schedule::shared::Shared;
 
 /// The effects that a component wants and that have not begun.

@@ -10,12 +10,13 @@ use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT, shown};
 use saoms_api::{
-    CallError, Cause, Chance, Departed, Failure, Header, KnownPublisher, Level, Record, Region, ReportValue,
-    StopFunction, Time, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, Header, KeptByOther, KnownPublisher, Level, Record, Region,
+    ReportValue, StopFunction, Time, Value, Work,
 };
 
-use super::body::{Part, subject};
+use super::body::subject;
 use super::declared::TopicUse;
+use super::part::Part;
 use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
 use crate::schedule::engine::lifecycle::Request;
@@ -105,6 +106,7 @@ impl Host for ComponentHost<'_> {
         let name = self.spec().topic(topic.name);
         let observers = self.shared.observers.of_topic(&name, topic);
         let mut engine = self.shared.lock();
+        engine.may_act(self.part)?;
         let bus = &mut engine.bus;
         self.is_as_declared(topic, TopicUse::Publish, bus.find(&name).is_none())?;
         let id = bus
@@ -115,6 +117,7 @@ impl Host for ComponentHost<'_> {
         if network != NO_NETWORK {
             engine.use_on_network(network, id);
         }
+        engine.note_publisher(self.part, id);
         drop(engine);
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
@@ -132,6 +135,7 @@ impl Host for ComponentHost<'_> {
         let takes = self.spec().class.declaration().takes.iter().any(|taken| taken.topic == topic.name);
         let observers = if takes { self.shared.observers.of_topic(&name, topic) } else { Vec::new() };
         let mut engine = self.shared.lock();
+        engine.may_act(self.part)?;
         self.is_as_declared(topic, TopicUse::Subscribe, engine.bus.find(&name).is_none())?;
         let fresh = engine
             .bus
@@ -165,6 +169,7 @@ impl Host for ComponentHost<'_> {
             let topic = engine.bus.topic_of(&subscription);
             engine.link(topic);
         }
+        engine.note_reader(self.part, &subscription);
         drop(engine);
         self.part.subscriptions.push(subscription);
         Ok((self.part.subscriptions.len() - 1) as u32)
@@ -202,8 +207,10 @@ impl Host for ComponentHost<'_> {
         if !self.part.spent.has_record() {
             return self.part.spent.is_within();
         }
+        self.may_act()?;
         if event == STOP {
             let mut engine = self.shared.lock();
+            engine.may_act(self.part)?;
             engine.note_caller(self.part.index);
             engine.request(self.part.index, Request::Unschedule, self.part.now);
             self.shared.release(engine);
@@ -213,6 +220,7 @@ impl Host for ComponentHost<'_> {
         if FaultCall::is_one(event) {
             let call = FaultCall::read(event).map_err(|fault| refused(&fault))?;
             let mut engine = self.shared.lock();
+            engine.may_act(self.part)?;
             let cause = engine.record_outside(self.part.now, &self.part.name, event.to_owned());
             engine.begin_fault((&call, cause), &self.part.spec.site, self.part.now);
             self.shared.release(engine);
@@ -229,6 +237,7 @@ impl Host for ComponentHost<'_> {
         let mut cause = None;
         for EventMessage { topic, to, bytes, marks: (key, place) } in messages {
             let mut engine = self.shared.lock();
+            engine.may_act(self.part)?;
             // A component that is not scheduled reads no topic.
             let Some(topic) = engine.bus.find(&topic) else { continue };
             let now = self.part.now;
@@ -277,8 +286,9 @@ impl Host for ComponentHost<'_> {
                  is their `place`"
             )));
         }
-        let reader = &mut self.part.subscriptions[subscription as usize];
         let mut engine = self.shared.lock();
+        engine.may_act(self.part)?;
+        let reader = &mut self.part.subscriptions[subscription as usize];
         let was_in_region = engine.bus.has_region(reader);
         engine.bus.set_region(reader, region, queue);
         engine.tell_interest(topic);
@@ -319,6 +329,10 @@ impl Host for ComponentHost<'_> {
         self.part.stored.is_earlier()
     }
 
+    fn kept_by_others(&self) -> Vec<KeptByOther<'_>> {
+        self.part.estate.kept_by_others(self.part.index, self.spec())
+    }
+
     fn goes_on(&self) -> bool {
         self.part.lasting.goes_on()
     }
@@ -346,18 +360,18 @@ impl Host for ComponentHost<'_> {
             )));
         }
         let registered = self.shared.stops.register(self.part.index, &self.part.name, stop);
-        self.part.stops.push(registered);
-        Ok(())
+        self.part.stops.push(Arc::clone(&registered));
+        // Code that is left behind from now on has its functions called; before, nobody knew this one.
+        self.may_act().inspect_err(|_| self.shared.stops.request(&[registered]))
     }
 
     fn is_wired(&self, reference: u32) -> bool {
-        self.wire(reference)
-            .is_some_and(|wire| wire.targets.len() + wire.elsewhere.len() > (reference >> TARGET_SHIFT) as usize)
+        self.wire(reference).is_some_and(|wire| wire.ends() > (reference >> TARGET_SHIFT) as usize)
     }
 
     fn targets(&self, reference: u32) -> u32 {
         // No real fleet has more targets than a handle can address.
-        self.wire(reference).map_or(0, |wire| (wire.targets.len() + wire.elsewhere.len()).min(MOST_TARGETS)) as u32
+        self.wire(reference).map_or(0, |wire| wire.ends().min(MOST_TARGETS)) as u32
     }
 
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
@@ -442,7 +456,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn alert(&mut self, kind: &str, subject: &str, line: Option<fmt::Arguments<'_>>) {
-        if self.part.spent.has_line() {
+        if self.part.spent.has_line() && self.may_act().is_ok() {
             let text = line.map(|line| line.to_string());
             self.part.note_alert(kind, subject, text.as_deref());
             let (kind, subject) = (kind.into(), subject.into());
@@ -457,16 +471,16 @@ impl Host for ComponentHost<'_> {
     }
 
     fn report(&mut self, path: &str, value: ReportValue) {
-        if self.may_report(path) && !self.shared.sections().set(path, value) {
+        if self.may_report(path) && self.may_act().is_ok() && !self.shared.sections().set(path, value) {
             self.cannot_report(path);
         }
     }
 
     fn count(&mut self, path: &str, more: i64) {
-        if !self.may_report(path) {
+        if !self.may_report(path) || self.may_act().is_err() {
             return;
         }
-        if self.shared.sections().add(path, more) {
+        if self.shared.sections().add_in_code(path, more, (self.part.index, self.part.code)) {
             self.part.lasting.note_count(path, more);
         } else {
             self.cannot_report(path);
@@ -479,6 +493,11 @@ impl Host for ComponentHost<'_> {
 }
 
 impl ComponentHost<'_> {
+    /// Judges whether its code may act on others: not if a change has left it behind.
+    fn may_act(&self) -> Result<(), Failure> {
+        if self.part.apart.is_some() { self.shared.look(|engine| engine.may_act(self.part)) } else { Ok(()) }
+    }
+
     pub(super) fn emit(&self, what: Occurrence) {
         self.shared.events.put(RunEvent { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
     }

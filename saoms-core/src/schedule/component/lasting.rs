@@ -6,7 +6,8 @@ use saoms_api::host::SharedMessage;
 use saoms_api::host::contain::contained;
 use saoms_api::{Failure, Saved};
 
-use super::body::{Body, Part};
+use super::body::Body;
+use super::part::Part;
 use crate::bus::{Bus, TopicId};
 use crate::report::Sections;
 use crate::schedule::engine::memory::AlertForm;
@@ -39,6 +40,8 @@ pub(crate) struct Lasting {
     /// True if the present instance hears such events, and has not finished an execution yet. If it fails, too, they
     /// may be why: they are not heard a third time.
     hears_unread: bool,
+    /// True if the events that are unread are of an earlier program, in which no execution failed that heard them.
+    is_unread_recalled: bool,
 }
 
 impl Lasting {
@@ -88,10 +91,11 @@ impl Lasting {
         self.unread.iter().chain(&self.unread_reactions)
     }
 
-    /// Has the next instance hear events again, or react to them again.
-    pub(crate) fn hear_again(&mut self, topic: TopicId, messages: Vec<SharedMessage>, reacts: bool) {
+    /// Has the next instance hear events, or react to them, that an earlier program left.
+    pub(crate) fn hear_recalled(&mut self, topic: TopicId, messages: Vec<SharedMessage>, reacts: bool) {
         let unread = if reacts { &mut self.unread_reactions } else { &mut self.unread };
         unread.push((topic, messages));
+        self.is_unread_recalled = true;
     }
 
     /// True while an instance initializes that goes on from a saved state.
@@ -156,19 +160,20 @@ impl Lasting {
             self.counted.push((path.to_owned(), more));
         }
     }
-
-    /// Takes back what was counted since the last save.
-    pub(crate) fn take_back(&mut self, sections: &mut Sections) {
-        if self.saved.is_some() {
-            for (path, more) in self.counted.drain(..) {
-                // It was added, so there is room for it.
-                let _ = sections.add(&path, more.saturating_neg());
-            }
-        }
-    }
 }
 
 impl Part {
+    /// Takes back what was counted since the last save.
+    pub(super) fn take_back_counts(&mut self, sections: &mut Sections) {
+        if self.lasting.saves && self.lasting.saved.is_some() {
+            for (path, more) in self.lasting.counted.drain(..) {
+                // It was added, so there is room for it.
+                let _ = sections.add(&path, more.saturating_neg());
+            }
+            sections.forget_in_code(self.index);
+        }
+    }
+
     /// Notes an alert that the component raises or ends.
     pub(super) fn note_alert(&mut self, kind: &str, subject: &str, text: Option<&str>) {
         self.alerts.retain(|alert| alert.kind != kind || alert.subject != subject);
@@ -255,7 +260,7 @@ impl Body {
         if lasting.unread.is_empty() && lasting.unread_reactions.is_empty() {
             return;
         }
-        lasting.hears_unread = true;
+        lasting.hears_unread = !std::mem::take(&mut lasting.is_unread_recalled);
         for (inboxes, unread) in [(inboxes, &mut lasting.unread), (reactions, &mut lasting.unread_reactions)] {
             for (topic, messages) in unread.drain(..) {
                 let mut places = subscriptions.iter().zip(&mut *inboxes);

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 use saoms_api::extension::{CallLine, CallOutcome, CallProxy, RemoteProxy};
 use saoms_api::host::{Operation, ServiceCall, format_duration};
 use saoms_api::{CallError, Failure};
-use saoms_lang::assembly::{ComponentSpec, RemoteTarget, Wire};
+use saoms_lang::assembly::{CALL_DEADLINE, ComponentSpec, RemoteTarget, Wire};
 
-use super::body::Part;
+use super::part::Part;
 use crate::network::exchange::call::{Outcome, OwnCall};
 use crate::network::exchange::wire::STOP;
 use crate::network::{FromRun, Port, Ticket};
@@ -19,8 +19,6 @@ use crate::schedule::networks::{NO_NETWORK, interface_hash};
 use crate::schedule::settings::nanos;
 use crate::schedule::shared::Shared;
 
-/// Time within which a call is answered that its caller waits for, unless the composite gives it.
-const DEADLINE: Duration = Duration::from_secs(3);
 /// Time after which who waits looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -87,7 +85,7 @@ impl Remotes {
                 let line = Line {
                     port,
                     call: own_call(&caller.spec, caller.index, (wire, target), handle),
-                    deadline: wire.deadline.unwrap_or(DEADLINE),
+                    deadline: wire.deadline.unwrap_or(CALL_DEADLINE),
                     tickets: BTreeMap::new(),
                     last: 0,
                     is_ending: false,

@@ -21,7 +21,6 @@ use saoms_api::Level;
 
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::ending::EndCause;
-use crate::schedule::engine::slot::NEVER;
 use crate::schedule::os::sys;
 use crate::schedule::os::thread::start_thread;
 use crate::schedule::settings::{ClockKind, nanos};
@@ -88,8 +87,7 @@ fn prepare_thread(shared: &Shared, priority: i32) {
 fn handle_stop_request(shared: &Shared, engine: &mut Engine, now: u64) {
     if shared.stop.load(Ordering::Relaxed) {
         // Also a run that pauses ends.
-        engine.hold = NEVER;
-        shared.clock.go_on();
+        engine.end_pause();
         let is_down = shared.is_down.load(Ordering::Relaxed);
         engine.begin_stop(if is_down { EndCause::Stopped } else { EndCause::Interrupted }, now);
     }

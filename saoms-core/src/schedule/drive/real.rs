@@ -59,6 +59,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             }
             Next::HandOver => engine = workers::hand_over(shared, engine),
             Next::Cut => engine.cut(&mut shared.sections(), now),
+            Next::Sample => engine.sample(&shared.observers, &shared.sections()),
             Next::Wait(until) => {
                 sleep(shared, engine, until);
                 engine = shared.lock();

@@ -100,6 +100,7 @@ fn component(path: &str, registry: &Registry) -> ComponentSpec {
         task: Some(TaskProperties::from_values(&values).unwrap()),
         references: Vec::new(),
         loops: Arc::default(),
+        web: Box::default(),
     }
 }
 
@@ -116,7 +117,7 @@ fn code_that_blocks_in_the_first_batch_is_noticed() {
     registry.add(Registration::of::<Blocks>()).unwrap();
     let shared = Arc::new(Shared::new(Settings::default().checked(), Clock::real(), Vec::new()));
     let components = ["sender", "blocks"].map(|path| component(path, &registry)).into();
-    change::apply(&shared, Assembly { components, ..Assembly::default() }).unwrap();
+    change::start(&shared, Assembly { components, ..Assembly::default() }).unwrap();
     spawn_timer(&shared, 0).unwrap();
     let within = Duration::from_secs(10);
     assert_eq!(has_reached.recv_timeout(within), Ok("between two executions"));

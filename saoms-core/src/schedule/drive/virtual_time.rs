@@ -30,6 +30,10 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             continue;
         }
         handle_stop_request(shared, &mut engine, now);
+        if engine.is_changing && engine.phase == RunPhase::Running {
+            engine = sleep(shared, engine);
+            continue;
+        }
         if engine.records.as_ref().is_some_and(|records| records.is_full()) {
             engine = wait_for_journal(shared, engine);
             continue;
@@ -61,6 +65,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             }
             // No component runs on a worker thread in virtual time, and nothing outlives the program.
             Next::HandOver | Next::Cut => {}
+            Next::Sample => engine.sample(&shared.observers, &shared.sections()),
             Next::Wait(_) if engine.phase == RunPhase::Running && now >= engine.hold => engine = sleep(shared, engine),
             Next::Wait(until) if engine.phase == RunPhase::Running && engine.advance_to(until) < NEVER => {
                 let before = std::mem::replace(&mut now, engine.advance_to(until));

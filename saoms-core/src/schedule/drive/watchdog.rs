@@ -27,19 +27,30 @@ pub(super) fn watch(shared: &Arc<Shared>) {
     prepare_thread(shared, SPARE_PRIORITY);
     let budget = nanos(shared.settings.budget);
     let mut least = 0;
+    // The timer was woken before its time, as by a message, and may be soon again. This thread then wakes once in a
+    // budget for as long as that goes on: to be woken for each of these executions would delay them.
+    let mut is_expecting = false;
+    let mut last = shared.pulse.begun();
     while !shared.ended.load(Ordering::Acquire) {
         let ticket = shared.spare.ticket();
         let present = shared.pulse.present();
         let from = present.since.unwrap_or(present.next);
-        let until = if from == NEVER { NEVER } else { from.saturating_add(budget).max(least) };
+        let mut until = if from == NEVER { NEVER } else { from.saturating_add(budget).max(least) };
+        let now = sys::monotonic();
+        if is_expecting && present.since.is_none() {
+            until = until.min(now.saturating_add(budget));
+        }
         shared.pulse.watch_from(until);
         fence(Ordering::SeqCst);
         if shared.pulse.present() != present {
             continue;
         }
-        let now = sys::monotonic();
         if now < until {
             shared.spare.wait(ticket, (until != NEVER).then_some(until));
+            let is_woken = shared.spare.ticket() != ticket;
+            let begun = shared.pulse.begun();
+            is_expecting = is_woken || is_expecting && begun != last;
+            last = begun;
             continue;
         }
         if present.since.is_some() {

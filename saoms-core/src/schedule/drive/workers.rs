@@ -34,6 +34,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
         };
         let started = shared.clock.now();
         let has_order = engine.has_order_for(index, started);
+        let describe = engine.questions.job();
         let slot = &mut engine.slots[index as usize];
         slot.queued = false;
         if slot.body.is_none() {
@@ -42,7 +43,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
         }
         let order = has_order.then_some(Job::Order);
         let question = match (slot.asked, slot.asked_to_wait) {
-            (true, _) => Some(Job::Describe),
+            (true, _) => Some(describe),
             (false, true) => Some(Job::Ask),
             (false, false) => None,
         };

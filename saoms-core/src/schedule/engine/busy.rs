@@ -8,7 +8,8 @@ use super::slot::PendingRequest;
 use super::trace::TraceStep;
 use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
-use crate::schedule::component::body::{Body, Job, Part};
+use crate::schedule::component::body::{Body, Job};
+use crate::schedule::component::part::Part;
 use crate::schedule::settings::nanos;
 
 impl Engine {
@@ -22,7 +23,7 @@ impl Engine {
                 Job::Execute | Job::React => true,
                 Job::Start => self.phase == RunPhase::Running && slot.pending == PendingRequest::None,
                 Job::Shutdown => part.retries_shutdown,
-                Job::Ask | Job::Describe | Job::Order | Job::Save => false,
+                Job::Ask | Job::Describe | Job::Sample | Job::Order | Job::Save => false,
             }
     }
 

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicKind};
 
-use super::memory::{CUT, Recollection};
+use super::memory::{CUT, MUCH, Recollection};
 use super::{Engine, RunPhase};
 use crate::bus::{Bus, TopicId};
-use crate::schedule::component::body::Part;
+use crate::schedule::component::part::Part;
 use crate::schedule::component::stored::{Stored, StoredChange};
 use crate::schedule::networks::kept::NOBODY;
 use crate::store::{Change, Contents, StoreQueue};
@@ -32,8 +32,11 @@ pub(crate) struct Uncommitted {
     before: Vec<StoredChange>,
     /// Messages of that execution, and of later ones that kept nothing.
     pub(super) messages: Vec<(TopicId, SharedMessage)>,
-    /// Number of messages beyond which those of state topics are removed that newer ones replace.
+    /// Number of bytes of them, roughly.
+    bytes: usize,
+    /// Number of messages and of bytes beyond which those of state topics are removed that newer ones replace.
     most: usize,
+    most_bytes: usize,
     /// True if the run does not end before the messages are read.
     settles: bool,
 }
@@ -77,6 +80,9 @@ impl Engine {
             |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
         let changes: Vec<Change> = to_keep.iter().map(change).chain(events).collect();
         let before: Vec<StoredChange> = to_keep.drain(..).map(|change| stored.change(change)).collect();
+        if self.memory.is_over(self.phase) {
+            return;
+        }
         self.batches += 1;
         let number = self.batches;
         match &self.commits {
@@ -94,7 +100,15 @@ impl Engine {
             }
         }
         self.look_at = self.injections.earliest().map_or(self.look_at, |when| when.min(self.look_at));
-        let uncommitted = Uncommitted { number, before, messages: Vec::new(), most: MANY, settles: false };
+        let uncommitted = Uncommitted {
+            number,
+            before,
+            messages: Vec::new(),
+            bytes: 0,
+            most: MANY,
+            most_bytes: MUCH,
+            settles: false,
+        };
         self.slots[*index as usize].uncommitted.push_back(uncommitted);
         self.uncommitted += 1;
     }
@@ -102,16 +116,22 @@ impl Engine {
     /// Lets the messages of an execution wait until what was kept before is committed. Those of a component that has
     /// lost what it kept are never sent.
     #[cold]
-    pub(super) fn hold_back(&mut self, part: &mut Part, settles: bool) {
+    pub(super) fn hold_back(&mut self, part: &mut Part, bytes: usize, settles: bool) {
         let slot = &mut self.slots[part.index as usize];
         match slot.uncommitted.back_mut() {
             Some(last) if !slot.is_cut_off => {
                 last.settles |= settles;
+                let (before, count) = (last.bytes, part.outbox.len());
+                last.bytes += bytes + count * size_of::<(TopicId, SharedMessage)>();
                 last.messages.append(&mut part.outbox);
-                if last.messages.len() > last.most {
+                let count = last.messages.len();
+                if count > last.most || last.bytes > last.most_bytes {
                     thin_out(&mut last.messages, &self.bus);
-                    last.most = MANY.max(2 * last.messages.len());
+                    let left = last.messages.len();
+                    last.bytes = (last.bytes as u128 * left as u128 / count.max(1) as u128) as usize;
+                    (last.most, last.most_bytes) = (MANY.max(2 * left), MUCH.max(2 * last.bytes));
                 }
+                self.memory.note_held_back(before, last.bytes);
             }
             _ => {
                 self.unsent += part.outbox.len() as u64;
@@ -143,9 +163,11 @@ impl Engine {
         let mut has_events = false;
         while let Some(first) = self.slots[index as usize].uncommitted.pop_front_if(|first| first.number <= number) {
             self.uncommitted -= 1;
+            self.memory.note_held_back(first.bytes, 0);
             has_events |= first.messages.iter().any(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event);
             if !first.messages.is_empty() {
-                self.send_all(index, &name, first.messages.into_iter(), first.settles, now);
+                let network = self.slots[index as usize].network;
+                self.send_all((index, &name), network, first.messages.into_iter(), first.settles, now);
             }
         }
         has_events
@@ -170,7 +192,8 @@ impl Engine {
         }
         let mut messages = 0;
         self.uncommitted -= slot.uncommitted.len();
-        for Uncommitted { before, messages: unsent, .. } in slot.uncommitted.drain(..).rev() {
+        for Uncommitted { before, messages: unsent, bytes, .. } in slot.uncommitted.drain(..).rev() {
+            self.memory.note_held_back(bytes, 0);
             messages += unsent.len();
             before.into_iter().rev().for_each(|change| drop(part.stored.change(change)));
         }
@@ -181,13 +204,27 @@ impl Engine {
     pub(crate) fn store_failed(&mut self, text: &str, now: u64) {
         for slot in &mut self.slots {
             slot.is_cut_off |= !slot.uncommitted.is_empty();
-            self.unsent += slot.uncommitted.drain(..).map(|one| one.messages.len() as u64).sum::<u64>();
         }
-        self.unsent += self.networks.kept.fail();
+        self.drop_uncommitted(0);
+        self.networks.kept.fail();
         self.unsent += self.fail_memory();
-        (self.uncommitted, self.last_commits) = (0, LastCommits::Over);
+        self.last_commits = LastCommits::Over;
         self.reasons.push(text.to_owned());
         self.end_if_done(now);
+    }
+
+    /// Drops what waits for the commit of later batches than this one, which will not be.
+    pub(super) fn drop_uncommitted(&mut self, batch: u64) {
+        let (mut executions, mut messages) = (0, 0);
+        for slot in &mut self.slots {
+            while let Some(last) = slot.uncommitted.pop_back_if(|last| last.number > batch) {
+                (executions, messages) = (executions + 1, messages + last.messages.len());
+                self.memory.note_held_back(last.bytes, 0);
+            }
+        }
+        let outside = self.networks.kept.drop_outside(batch);
+        self.uncommitted -= executions + outside;
+        self.unsent += (messages + outside) as u64;
     }
 
     /// Removes what a component keeps that leaves the fleet.

@@ -8,7 +8,7 @@ use saoms_lang::assembly::Loss;
 use super::{Engine, RunPhase};
 use crate::bus::{MOST_KEYS, TopicId};
 use crate::observe::{Notification, Occurrence, SentMessage};
-use crate::schedule::component::body::Part;
+use crate::schedule::component::part::Part;
 use crate::schedule::inject::OUTSIDE_NAME;
 use crate::schedule::networks::NO_NETWORK;
 
@@ -47,22 +47,30 @@ impl Engine {
         if part.outbox.is_empty() {
             return;
         }
-        part.sent_bytes = 0;
+        let sent_bytes = std::mem::take(&mut part.sent_bytes);
         let settles = std::mem::take(&mut part.has_raised) || self.says_last_words(part);
         let slot = &self.slots[part.index as usize];
-        if slot.uncommitted.is_empty() && !slot.is_cut_off {
-            self.send_all(part.index, &part.name, part.outbox.drain(..), settles, now);
+        if self.memory.is_over(self.phase) && !slot.is_cut_off {
+            // It stays in the program: what waits for a commit leaves over networks, and this does not.
+            self.send_all((part.index, &part.name), NO_NETWORK, part.outbox.drain(..), settles, now);
+        } else if slot.uncommitted.is_empty() && !slot.is_cut_off {
+            self.send_all((part.index, &part.name), slot.network, part.outbox.drain(..), settles, now);
         } else {
-            self.hold_back(part, settles);
+            // Those for a network have this form there.
+            let bytes = match slot.network {
+                NO_NETWORK => sent_bytes,
+                _ => part.outbox.iter().map(|(_, message)| message.bytes().len()).sum(),
+            };
+            self.hold_back(part, bytes, settles);
         }
     }
 
-    /// Sends messages of a component. With `settles` the run does not end before they are read.
+    /// Sends messages of a component, also over a network. With `settles` the run does not end before they are read.
     #[inline]
     pub(super) fn send_all(
         &mut self,
-        index: u32,
-        name: &Arc<str>,
+        (index, name): (u32, &Arc<str>),
+        network: u8,
         messages: impl ExactSizeIterator<Item = (TopicId, SharedMessage)>,
         settles: bool,
         now: u64,
@@ -72,7 +80,6 @@ impl Engine {
             self.settle(now);
         }
         self.slots[index as usize].statistics.sent += messages.len() as u64;
-        let network = self.slots[index as usize].network;
         for (topic, message) in messages {
             if network != NO_NETWORK {
                 self.put_on_network(network, name, topic, &message, now);

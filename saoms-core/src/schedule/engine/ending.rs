@@ -35,6 +35,7 @@ impl Engine {
         }
         self.stops.request_all();
         self.end_memory();
+        self.sampling.end();
         self.phase = RunPhase::Stopping;
         self.cause = Some(cause);
         self.ended = (now, sys::monotonic());
@@ -45,6 +46,7 @@ impl Engine {
             commits.into_iter().for_each(|(component, number)| self.commit(component, number, now));
         }
         self.injections.clear();
+        self.end_orders();
         self.roles.work.clear();
         self.wake = true;
         for slot in &mut self.slots {

@@ -65,16 +65,16 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         let mut body = slot.body.take()?;
         self.out += 1;
-        slot.out_since = now;
+        self.slots[index as usize].out_since = self.begin_of_code(now);
         body.part.now = now;
-        self.note_code(index, &body);
+        self.note_code(index, &mut body);
         let slot = &mut self.slots[index as usize];
         if matches!(job, Job::Start | Job::Shutdown | Job::Order) {
             body.part.collection.reset();
         }
         if !self.real
             && self.phase == RunPhase::Running
-            && !matches!(job, Job::Ask | Job::Describe | Job::Order | Job::Save)
+            && !matches!(job, Job::Ask | Job::Describe | Job::Sample | Job::Order | Job::Save)
         {
             self.begun = now;
         }
@@ -90,11 +90,13 @@ impl Engine {
                 body.part.is_ending = self.phase == RunPhase::Stopping;
                 body.part.retries_shutdown = self.phase != RunPhase::Stopping || self.out > 1;
             }
-            Job::Ask | Job::Describe | Job::Save => {}
+            Job::Ask | Job::Describe | Job::Sample | Job::Save => {}
             Job::Order => self.begin_order(index, &mut body, now),
             Job::Start => {
                 let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
                 slot.instances += 1;
+                // It may say something else than the instance before.
+                slot.is_wanted = None;
                 slot.execution = 0;
                 slot.cancelled.store(false, Ordering::Relaxed);
                 body.part.chance = Chance::for_component(seed, &slot.name);
@@ -249,11 +251,12 @@ impl Engine {
             return;
         }
         self.note_return();
+        self.slots[index as usize].memory.note_end_of_code();
         if self.phase == RunPhase::Stopping {
             // Each component has the time of `grace`. Calls that it makes give it no more.
             self.ended.1 = sys::monotonic();
         }
-        if job == Job::Describe {
+        if matches!(job, Job::Describe | Job::Sample) {
             self.note_answer(index);
         }
         if self.slots[index as usize].stops_again {
@@ -292,7 +295,13 @@ impl Engine {
                 let slot = &mut self.slots[index as usize];
                 match job {
                     Job::Execute | Job::React | Job::Order | Job::Save | Job::Shutdown => {}
-                    Job::Describe => slot.described = body.part.described.take(),
+                    Job::Describe | Job::Sample => match body.part.undescribed.take() {
+                        Some(failure) => self.note_unsampled(index, &failure, ended),
+                        None => {
+                            slot.described = body.part.described.take();
+                            self.note_sampled(index, ended);
+                        }
+                    },
                     Job::Ask => {
                         slot.waits_for = body.part.waits_for.take();
                         self.note_waiting(index);
@@ -310,7 +319,7 @@ impl Engine {
                 }
                 match job {
                     Job::Execute | Job::React => self.executed(index, ended),
-                    Job::Ask | Job::Describe | Job::Order | Job::Save => self.answered(index, ended),
+                    Job::Ask | Job::Describe | Job::Sample | Job::Order | Job::Save => self.answered(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
                 }
@@ -335,6 +344,7 @@ impl Engine {
 
     #[inline]
     pub(super) fn executed(&mut self, index: u32, now: u64) {
+        self.note_executed(index, now);
         let slot = &mut self.slots[index as usize];
         slot.waiting = false;
         slot.skipping = false;

@@ -11,8 +11,9 @@ use super::slot::{NEVER, PendingRequest, SlotState};
 use super::trace::TraceStep;
 use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
-use crate::schedule::component::body::{Body, Job, Part};
+use crate::schedule::component::body::{Body, Job};
 use crate::schedule::component::library::with_library;
+use crate::schedule::component::part::Part;
 use crate::schedule::settings::nanos;
 
 /// What was told of a failure.
@@ -28,7 +29,8 @@ impl Engine {
     /// Tells the failure of a component whose code has just returned, unless the job is tried again or belongs to a
     /// change. The component has still to [fail](Engine::fail).
     pub(crate) fn tell_early(&mut self, part: &mut Part, job: Job, failure: &Failure, now: u64) {
-        if !part.held && !self.is_abandoned(part.index) && !self.tries_again(part.index, job, failure, part) {
+        let is_member = !self.is_abandoned(part.index) && !self.is_left_behind(part);
+        if !part.held && is_member && !self.tries_again(part.index, job, failure, part) {
             part.told = Some(self.tell(part, job, failure, now));
         }
     }
@@ -66,7 +68,7 @@ impl Engine {
         part.vote = None;
         let doing = match job {
             Job::Start => "could not start: ",
-            Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Order | Job::Save => "",
+            Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Sample | Job::Order | Job::Save => "",
             Job::Shutdown => "could not shut down: ",
         };
         let spec = part.blamed.take().map_or(&part.spec, |other| &self.slots[other as usize].spec);
@@ -124,6 +126,7 @@ impl Engine {
                 slot.restarts += 1;
                 slot.restarting = true;
                 slot.state = SlotState::Starting;
+                slot.leaving.begins_again();
                 self.enqueue(index, now.saturating_add(nanos(pause)));
                 if !goes_on {
                     self.tell_outage(index, true, now);

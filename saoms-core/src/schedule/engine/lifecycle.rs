@@ -123,6 +123,7 @@ impl Engine {
         self.emit(now, index, if again { Occurrence::Restarted { number, continued } } else { Occurrence::Started });
         let slot = &mut self.slots[index as usize];
         slot.due = now.saturating_add(slot.policy.delay);
+        slot.in_delay = true;
         if let Some(last) = slot.last_due.filter(|last| slot.due <= *last) {
             // Otherwise a component that schedules itself anew without a delay would keep virtual time from advancing.
             slot.due = last.saturating_add(slot.policy.period);
@@ -163,7 +164,7 @@ impl Engine {
     }
 
     /// Removes a failed instance from its topics, but keeps its read positions for the next instance.
-    pub(super) fn keep_subscriptions(&mut self, body: &mut Body) {
+    pub(in crate::schedule) fn keep_subscriptions(&mut self, body: &mut Body) {
         for topic in body.part.publishers.drain(..) {
             self.bus.unpublish(topic);
         }

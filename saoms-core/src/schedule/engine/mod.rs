@@ -14,6 +14,7 @@ mod overrun;
 pub(super) mod queue;
 mod reaction;
 mod report;
+pub(super) mod sampling;
 pub(super) mod slot;
 pub(super) mod standstill;
 mod status;
@@ -30,16 +31,19 @@ use self::commit::{Commits, LastCommits};
 use self::ending::EndCause;
 use self::memory::Memory;
 use self::queue::Queue;
+use self::sampling::Sampling;
 use self::slot::{NEVER, Slot, SlotState};
 use self::standstill::StandstillDetector;
 use self::status::Questions;
 use self::trace::{Trace, TraceStep};
 use self::votes::VoteTally;
+use super::change::ApartBodies;
 use super::component::body::Job;
 use super::hold::Pace;
 use super::inject::Injections;
 use super::networks::Networks;
 use super::order::PendingOrders;
+use super::os::clock::Clock;
 use super::settings::{ClockKind, Settings, nanos};
 use super::stop::Stops;
 use super::topics::publishers::DeclaredPublishers;
@@ -61,6 +65,8 @@ pub(crate) struct Engine {
     pub(crate) phase: RunPhase,
     /// True while the start of a run in virtual time is told: nothing happens until it has been.
     pub(crate) is_announcing: bool,
+    /// True while components are out for a change of the fleet: virtual time stands still.
+    pub(crate) is_changing: bool,
     pub(crate) roles: Roles,
     /// Events for the observers, delivered when the lock is free.
     pub(crate) notifications: Vec<Notification>,
@@ -95,6 +101,8 @@ pub(crate) struct Engine {
     /// Functions that stop hardware, and the components that have some or use some.
     pub(crate) stops: Arc<Stops>,
     pub(crate) with_hardware: Vec<u32>,
+    /// Bodies whose code a change may leave behind.
+    pub(crate) apart: ApartBodies,
     /// Counter of the journal's records.
     pub(crate) record_ids: Arc<AtomicU64>,
     pub(crate) faults: FaultPlay,
@@ -128,6 +136,7 @@ pub(crate) struct Engine {
     pub(crate) votes: VoteTally,
     pub(crate) standstill: StandstillDetector,
     pub(crate) questions: Questions,
+    pub(crate) sampling: Sampling,
     /// Time before which no message from outside is due and no standstill can be found; later effects only delay one.
     pub(crate) look_at: u64,
     /// Latest end of the run.
@@ -139,6 +148,7 @@ pub(crate) struct Engine {
     /// In virtual time, how fast time passes; `None` is as fast as the machine allows.
     pub(crate) pace: Option<Pace>,
     pub(crate) real: bool,
+    pub(crate) clock: Arc<Clock>,
     pub(crate) budget: u64,
     pub(crate) seed: u64,
 }
@@ -182,6 +192,8 @@ pub(crate) enum Next {
     HandOver,
     /// Make a cut of the present moment for the memory.
     Cut,
+    /// Take a sample of the present moment for the observers.
+    Sample,
     /// Sleep until this time.
     Wait(u64),
     /// The run is over.
@@ -189,13 +201,14 @@ pub(crate) enum Next {
 }
 
 impl Engine {
-    pub(crate) fn new(settings: &Settings) -> Engine {
+    pub(crate) fn new(settings: &Settings, clock: &Arc<Clock>) -> Engine {
         Engine {
             slots: Vec::new(),
             queue: Queue::default(),
             bus: Bus::default(),
             phase: RunPhase::Starting,
             is_announcing: false,
+            is_changing: false,
             roles: Roles::default(),
             notifications: Vec::new(),
             wake: false,
@@ -215,6 +228,7 @@ impl Engine {
             outside: OutsideRing::default(),
             stops: Arc::default(),
             with_hardware: Vec::new(),
+            apart: ApartBodies::default(),
             record_ids: Arc::default(),
             faults: FaultPlay::new(settings.seed),
             networks: Networks::default(),
@@ -226,7 +240,7 @@ impl Engine {
             uncommitted: 0,
             last_commits: LastCommits::None,
             found: Contents::default(),
-            memory: Memory::new(),
+            memory: Memory::new(nanos(settings.together)),
             unsent: 0,
             takers: (None, 0),
             speakers: None,
@@ -239,12 +253,14 @@ impl Engine {
             votes: VoteTally::default(),
             standstill: StandstillDetector::new(settings),
             questions: Questions::default(),
+            sampling: Sampling::default(),
             look_at: 0,
             limit: settings.limit.map_or(NEVER, nanos),
             pause: 0,
             hold: NEVER,
             pace: None,
             real: settings.clock == ClockKind::Real,
+            clock: Arc::clone(clock),
             budget: nanos(settings.budget),
             seed: settings.seed,
         }
@@ -309,7 +325,10 @@ impl Engine {
                         // Real time passes also where nobody executes: a standstill is told then, too.
                         let look_at = if self.real { self.look_at } else { NEVER };
                         let other = look_at.min(self.limit).min(self.next_cut());
-                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(other));
+                        match self.sample_or_wait(now, self.earliest().unwrap_or(NEVER).min(other)) {
+                            Some(next) => return next,
+                            None => continue,
+                        }
                     };
                     let slot = &mut self.slots[index as usize];
                     if slot.entry != when {
@@ -329,7 +348,11 @@ impl Engine {
                         return Next::Run(index, job);
                     }
                 }
-                RunPhase::Stopping if self.is_last_cut_due() => return self.next_for_last_cut(now),
+                RunPhase::Stopping if self.sampling.is_last_due() => return self.next_for_last_sample(),
+                RunPhase::Stopping if self.is_last_cut_due() => match self.next_for_last_cut(now) {
+                    Some(next) => return next,
+                    None => continue,
+                },
                 RunPhase::Stopping => match self.next_to_end() {
                     Some(index) => return Next::Run(index, Job::Shutdown),
                     None if self.out == 0 => self.phase = RunPhase::Ended,

@@ -2,6 +2,7 @@
 
 use saoms_api::Time;
 use saoms_api::extension::{FailureNotice, Outage};
+use serde_json::Map;
 
 use super::{Engine, RunPhase};
 use crate::bus::TopicId;
@@ -34,7 +35,7 @@ impl Engine {
             }
             let name = std::sync::Arc::clone(&slot.name);
             let (bytes, text) = (notice.message)(outage);
-            let cause = self.record_notice(now, &name, (COMPONENT_FAILED, text), self.faults.cause(index));
+            let cause = self.record_notice(now, &name, (COMPONENT_FAILED, text, Map::new()), self.faults.cause(index));
             self.standstill.note_effect(now);
             for topic in topics {
                 self.deliver_injection((now, &name), cause, topic, (bytes.clone(), None, None), None);

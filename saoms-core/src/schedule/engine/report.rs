@@ -3,7 +3,9 @@ use super::ending::EndCause;
 use super::slot::Slot;
 use super::trace::Trace;
 use crate::journal::Journal;
-use crate::report::{ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes};
+use crate::report::{
+    ComponentReport, Label, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes,
+};
 
 /// Maximum number of components that a reason names; the votes name all.
 const REASON_NAMES: usize = 3;
@@ -14,6 +16,10 @@ impl Engine {
         let mut sections = sections.clone();
         for (kind, count) in self.faults.counts() {
             sections.add(&format!("faults.applied.{kind}"), i64::try_from(count).unwrap_or(i64::MAX));
+        }
+        let lost: u64 = self.networks.lost().map(|(_, count)| count).sum();
+        if lost > 0 {
+            sections.add("networks.lost", i64::try_from(lost).unwrap_or(i64::MAX));
         }
         RunReport {
             seed: self.seed,
@@ -27,6 +33,7 @@ impl Engine {
             standstill: self.standstill.told.clone(),
             outcome: self.outcome(),
             trace_hash: self.trace.as_ref().map(Trace::digits),
+            recording: None,
             part: self.networks.elsewhere.part().cloned(),
             nodes: Vec::new(),
         }
@@ -46,11 +53,11 @@ impl Engine {
     }
 
     pub(super) fn component_report(&self, slot: &Slot) -> ComponentReport {
-        let (spec, statistics) = (&slot.spec, &slot.statistics);
+        let (statistics, Label { name, id, class }) = (&slot.statistics, &slot.label);
         ComponentReport {
-            name: spec.path.clone(),
-            id: spec.task.as_ref().map(|task| task.id.clone()),
-            class: spec.class.name().to_owned(),
+            name: name.clone(),
+            id: id.clone(),
+            class: class.clone(),
             executions: statistics.executions,
             missed: statistics.missed,
             reactions: statistics.reactions,
@@ -88,6 +95,7 @@ impl Engine {
 
     fn outcome(&self) -> Outcome {
         let mut reasons = self.reasons.clone();
+        reasons.extend(self.networks.losses());
         let status = match self.cause {
             Some(EndCause::Interrupted) => RunStatus::Interrupted,
             cause if !reasons.is_empty() => {

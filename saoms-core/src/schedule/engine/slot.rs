@@ -7,13 +7,15 @@ use super::commit::Uncommitted;
 use super::memory::SlotMemory;
 use super::overrun::{self, Decision};
 use crate::journal::Ring;
-use crate::report::Lateness;
+use crate::report::{Label, Lateness};
+use crate::schedule::change::Leaving;
 use crate::schedule::component::body::Body;
 use crate::schedule::component::stored::Stored;
 use crate::schedule::networks::NO_NETWORK;
 use crate::schedule::settings::nanos;
 use crate::schedule::stop::hears_stops;
-use crate::status::Description;
+use crate::status::{ComponentStatus, Description};
+use saoms_api::Time;
 use saoms_lang::assembly::{ComponentSpec, Loss, Overrun};
 
 /// A time that never comes.
@@ -35,7 +37,7 @@ pub(crate) struct Slot {
     pub(crate) until: u64,
     /// Executions of the present instance.
     pub(crate) execution: u64,
-    /// Time since which its body is out.
+    /// Time since which its code runs, by the clock that goes on in a pause.
     pub(crate) out_since: u64,
     /// In virtual time, the end of an execution that a fault makes longer.
     pub(crate) busy_until: u64,
@@ -51,6 +53,8 @@ pub(crate) struct Slot {
     pub(crate) waiting: bool,
     /// True if it is queued for the worker threads.
     pub(crate) queued: bool,
+    /// True if it is in its delay: from its start until its first execution.
+    pub(crate) in_delay: bool,
     /// True if messages were lost in its last period.
     pub(crate) dropping: bool,
     /// True if its last execution was skipped, because a component that it called was busy.
@@ -74,6 +78,8 @@ pub(crate) struct Slot {
     pub(crate) memory: SlotMemory,
     /// Specification of the component, the same as in its body.
     pub(crate) spec: Arc<ComponentSpec>,
+    /// What it knows of its leaving.
+    pub(crate) leaving: Leaving,
     /// True if it has ever joined the fleet.
     pub(crate) joined: bool,
     /// Due time of the last reaction.
@@ -95,9 +101,19 @@ pub(crate) struct Slot {
     pub(crate) asked_to_wait: bool,
     /// Its last answer.
     pub(crate) described: Option<Arc<Description>>,
+    /// How it is, for the sample that components are asked for: made one by one, so that none waits for all of them.
+    pub(crate) sampled: Option<Box<ComponentStatus>>,
+    /// True once it was told that it had no answer for a sample.
+    pub(crate) is_unsampled: bool,
+    /// True if samples need what it says of itself; `None` while it has said nothing.
+    pub(crate) is_wanted: Option<bool>,
+    /// The time of what that was judged by.
+    pub(crate) judged_by: Option<Time>,
     /// Reason of a stop by its own `overrun`.
     pub(crate) overrun_failure: Option<String>,
     pub(crate) name: Arc<str>,
+    /// Its names in reports and snapshots.
+    pub(crate) label: Label,
     pub(crate) cancelled: Arc<AtomicBool>,
     emergency: Arc<AtomicBool>,
     /// Number of instances so far.
@@ -247,20 +263,17 @@ impl Slot {
     pub(crate) fn new(index: u32, spec: Arc<ComponentSpec>, stored: Stored) -> Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
         let policy = TaskPolicy::of(&spec);
-        let cancelled = Arc::new(AtomicBool::new(false));
-        let mut body = Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
-        let emergency = Arc::new(AtomicBool::new(false));
-        body.part.emergency = Arc::clone(&emergency);
-        body.part.stored = stored;
-        Slot {
-            body: Some(Box::new(body)),
+        let mut slot = Slot {
+            body: None,
             stopped: false,
-            emergency,
+            emergency: Arc::default(),
             hears_stops: hears_stops(&spec),
+            label: Label::of(&spec),
             stops_again: false,
             spec,
             held: true,
             joined: false,
+            leaving: Leaving::Not,
             state: SlotState::Idle,
             entry: NEVER,
             due: NEVER,
@@ -274,6 +287,7 @@ impl Slot {
             pending: PendingRequest::None,
             waiting: false,
             queued: false,
+            in_delay: false,
             dropping: false,
             skipping: false,
             out_since: NEVER,
@@ -287,6 +301,10 @@ impl Slot {
             asked: false,
             asked_to_wait: false,
             described: None,
+            sampled: None,
+            is_unsampled: false,
+            is_wanted: None,
+            judged_by: None,
             statistics: Statistics::default(),
             uncommitted: VecDeque::new(),
             is_cut_off: false,
@@ -295,10 +313,30 @@ impl Slot {
             memory: SlotMemory::default(),
             overrun_failure: None,
             name,
-            cancelled,
+            cancelled: Arc::default(),
             instances: 0,
             restarts: 0,
             restarting: false,
+        };
+        slot.body = Some(slot.empty_body(index, stored));
+        slot
+    }
+
+    /// A body without an instance.
+    pub(crate) fn empty_body(&self, index: u32, stored: Stored) -> Box<Body> {
+        let (spec, name, cancelled) = (Arc::clone(&self.spec), Arc::clone(&self.name), Arc::clone(&self.cancelled));
+        let mut body = Body::new(index, spec, name, self.policy.period, cancelled);
+        body.part.emergency = Arc::clone(&self.emergency);
+        body.part.stored = stored;
+        Box::new(body)
+    }
+
+    /// The end of its delay, while it is in that. An execution that is not over counts as not begun.
+    pub(crate) fn delayed_until(&self) -> Option<u64> {
+        match self.execution {
+            _ if !self.in_delay || self.state != SlotState::Active => None,
+            0 => Some(self.due),
+            _ => self.last_due.filter(|_| self.body.is_none()),
         }
     }
 
@@ -343,6 +381,15 @@ impl Slot {
             SlotState::Starting | SlotState::Active => self.pending != PendingRequest::Leave,
             SlotState::Leaving => matches!(self.pending, PendingRequest::Return { .. }),
             SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => false,
+        }
+    }
+
+    /// True if it is to shut down, for somebody wants that, and has not.
+    pub(crate) fn has_to_leave(&self) -> bool {
+        match self.state {
+            SlotState::Starting | SlotState::Active | SlotState::Abandoned => self.pending == PendingRequest::Leave,
+            SlotState::Leaving => self.overrun_failure.is_none() && !self.is_scheduled(),
+            SlotState::Idle | SlotState::Failed | SlotState::Removed => false,
         }
     }
 

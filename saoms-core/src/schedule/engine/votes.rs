@@ -4,6 +4,7 @@ use super::commit::LastCommits;
 use super::ending::EndCause;
 use super::trace::TraceStep;
 use super::{Engine, RunPhase};
+use crate::schedule::change::Leaving;
 
 /// Counts of the votes about the work that is left.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,6 +57,14 @@ impl Engine {
             self.step(now, index, TraceStep::GaveUp);
         }
         let Some(left) = ballot.left else { return };
+        let slot = &mut self.slots[index as usize];
+        if slot.leaving != Leaving::Not {
+            slot.leaving.note(left);
+            // Of one that does not vote otherwise it is no word about the run.
+            if slot.sees_work.is_none() {
+                return;
+            }
+        }
         let before = self.slots[index as usize].sees_work.replace(left);
         if before == Some(left) {
             return;

@@ -32,6 +32,8 @@ impl fmt::Display for NotCommitted {
 
 impl std::error::Error for NotCommitted {}
 
+const CUT_SHORT: &str = "the run ended while something that belongs together was not complete";
+
 /// Waits until all that has happened is committed.
 pub(super) fn wait(shared: &Shared, patience: Duration) -> Result<(), NotCommitted> {
     let Some(queue) = shared.store.get() else { return Ok(()) };
@@ -45,9 +47,14 @@ pub(super) fn wait(shared: &Shared, patience: Duration) -> Result<(), NotCommitt
         if let Some(failure) = queue.failure() {
             break Err(NotCommitted::Failed(failure));
         }
+        if engine.memory.is_committed(cut) {
+            break Ok(());
+        }
+        if engine.memory.is_cut_short() {
+            break Err(NotCommitted::Failed(CUT_SHORT.to_owned()));
+        }
         // After the last cut nothing more happens.
-        let is_over = engine.phase == RunPhase::Ended && !engine.memory.has_uncommitted();
-        if engine.memory.is_committed(cut) || is_over {
+        if engine.phase == RunPhase::Ended && !engine.memory.has_uncommitted() {
             break Ok(());
         }
         let left = until.saturating_duration_since(Instant::now());
@@ -64,20 +71,32 @@ pub(super) fn wait(shared: &Shared, patience: Duration) -> Result<(), NotCommitt
 #[must_use = "what happens after it is dropped does not belong together"]
 pub struct Together {
     shared: Arc<Shared>,
+    /// True if it keeps cuts away.
+    guards: bool,
+}
+
+impl Together {
+    /// True if the run ends, and the memory with it: what happens now is refused, and whoever counts what was taken
+    /// does not count it, so that the next program takes it.
+    pub fn is_too_late(&self) -> bool {
+        !self.guards
+    }
 }
 
 pub(super) fn together(shared: &Arc<Shared>) -> Together {
     let mut engine = shared.lock();
-    engine.guard_cut(true);
+    let guards = engine.guard_cut();
     shared.release(engine);
-    Together { shared: Arc::clone(shared) }
+    Together { shared: Arc::clone(shared), guards }
 }
 
 impl Drop for Together {
     fn drop(&mut self) {
-        let mut engine = self.shared.lock();
-        engine.guard_cut(false);
-        self.shared.release(engine);
+        if self.guards {
+            let mut engine = self.shared.lock();
+            engine.unguard_cut();
+            self.shared.release(engine);
+        }
     }
 }
 

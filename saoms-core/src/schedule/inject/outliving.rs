@@ -12,6 +12,19 @@ use crate::schedule::topics::takers::EventMessage;
 impl Engine {
     /// What comes from outside and waits for its time. Faults end with the program, and so does what they hold up.
     pub(in crate::schedule) fn waiting_inputs(&self) -> InputsForm {
+        // They are due, and wait for code that runs.
+        let orders = self.orders.accepted().map(|order| InputForm {
+            at: 0,
+            text: order.line(),
+            is_order: true,
+            is_event: false,
+            messages: Vec::new(),
+        });
+        InputsForm { inputs: orders.chain(self.injected_inputs()).collect() }
+    }
+
+    /// The same without orders that are due.
+    pub(in crate::schedule) fn injected_inputs(&self) -> Vec<InputForm> {
         let message = |topic: String, to: Option<u32>, bytes: &[u8]| {
             let to = to.and_then(|to| self.name_of(to)).map(|to| to.to_string()).unwrap_or_default();
             InputMessage { topic, to, bytes: bytes.to_vec() }
@@ -31,15 +44,7 @@ impl Engine {
             };
             Some(InputForm { at: *at, text, is_order, is_event, messages })
         };
-        // They are due, and wait for code that runs.
-        let orders = self.orders.accepted().map(|order| InputForm {
-            at: 0,
-            text: order.line(),
-            is_order: true,
-            is_event: false,
-            messages: Vec::new(),
-        });
-        InputsForm { inputs: orders.chain(self.injections.waiting.iter().filter_map(input)).collect() }
+        self.injections.waiting.iter().filter_map(input).collect()
     }
 
     /// Lets what came from outside in an earlier program take effect at its time.

@@ -12,7 +12,7 @@ use super::{NO_NETWORK, NetworkedFleet};
 use crate::bus::TopicId;
 use crate::network::FromRun;
 use crate::network::exchange::{KeptEvent, KnownReader, Memory, Remembered};
-use crate::schedule::component::body::Part;
+use crate::schedule::component::part::Part;
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::commit::Commits;
 use crate::store::{Batch, Change};
@@ -77,10 +77,16 @@ impl KeptEvents {
         Some(topic.left)
     }
 
-    /// Nothing is committed any more. Gives the number of messages that do not leave.
-    pub(in crate::schedule) fn fail(&mut self) -> u64 {
+    /// Nothing is committed any more.
+    pub(in crate::schedule) fn fail(&mut self) {
         self.topics.values_mut().for_each(|topic| topic.accepted = topic.left);
-        std::mem::take(&mut self.outside).len() as u64
+    }
+
+    /// Drops what waits for later batches than this one. Gives the number of messages.
+    pub(in crate::schedule) fn drop_outside(&mut self, batch: u64) -> usize {
+        let before = self.outside.len();
+        self.outside.retain(|outside| outside.batch <= batch);
+        before - self.outside.len()
     }
 }
 
@@ -93,7 +99,7 @@ impl Engine {
     #[inline]
     pub(in crate::schedule) fn events_to_keep(&mut self, part: &Part) -> Vec<Change> {
         let network = self.slots[part.index as usize].network;
-        if network == NO_NETWORK || !self.keeps_events() {
+        if network == NO_NETWORK || !self.keeps_events() || self.memory.is_over(self.phase) {
             return Vec::new();
         }
         let outbox = part.outbox.iter().filter(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event);
@@ -133,6 +139,10 @@ impl Engine {
         message: &SharedMessage,
         now: u64,
     ) {
+        if self.memory.is_over(self.phase) {
+            // The fleet goes on from before that.
+            return;
+        }
         if self.bus.kind(topic) != TopicKind::Event || !self.keeps_events() {
             return self.put_on_network(network, by, topic, message, now);
         }

@@ -5,6 +5,8 @@ mod calls;
 mod caught_up;
 pub(super) mod elsewhere;
 pub(super) mod kept;
+#[cfg(test)]
+mod tests;
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
@@ -43,6 +45,8 @@ pub(super) struct Networks {
     all: Vec<(String, Arc<Port>)>,
     /// Of each, whether all its programs agree that no work is left.
     are_done: Vec<bool>,
+    /// Of each, the number of messages that were lost, and what was told of the first.
+    lost: Vec<(u64, String)>,
     /// What is left there just before the engine is unlocked.
     pub(super) waiting: Vec<(u8, FromRun)>,
     /// The networks of the components that use each topic.
@@ -64,6 +68,11 @@ impl Networks {
         place.and_then(|place| u8::try_from(place).ok()).unwrap_or(NO_NETWORK)
     }
 
+    /// True if the program takes part in the network of this url.
+    pub(super) fn has(&self, url: &str) -> bool {
+        self.all.iter().any(|(known, _)| known == url)
+    }
+
     /// The url of a network.
     pub(super) fn url(&self, network: u8) -> String {
         self.all.get(usize::from(network)).map(|(url, _)| url.clone()).unwrap_or_default()
@@ -74,21 +83,41 @@ impl Networks {
         self.all.get(usize::from(network)).map(|(_, port)| Arc::clone(port))
     }
 
+    /// The url of each network, and the number of messages that were lost on it.
+    pub(super) fn lost(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.all.iter().zip(&self.lost).map(|((url, _), (count, _))| (url.as_str(), *count))
+    }
+
+    /// Of each network on which messages were lost, how many, and what was told of the first.
+    pub(super) fn losses(&self) -> impl Iterator<Item = String> {
+        let lost = self.all.iter().zip(&self.lost).filter(|(_, (count, _))| *count > 0);
+        lost.map(|((url, _), (count, first))| {
+            let messages = if *count == 1 { "1 message was".to_owned() } else { format!("{count} messages were") };
+            format!("{messages} lost on the network `{url}`: {first}")
+        })
+    }
+
     /// True if the programs of all networks agree that no work is left, also where there is no network.
     pub(super) fn are_done(&self) -> bool {
         self.are_done.iter().all(|is_done| *is_done)
     }
 
-    /// Leaves what waits for the threads of the networks.
+    /// Leaves what waits for the threads of the networks. What was left has to be [sent](Port::send) once the engine is
+    /// unlocked.
     #[cold]
-    pub(super) fn leave(&mut self) {
+    pub(super) fn leave(&mut self) -> Vec<Arc<Port>> {
+        let mut ports = Vec::new();
         let mut waiting = self.waiting.drain(..).peekable();
         while let Some((network, first)) = waiting.next() {
             let others = std::iter::from_fn(|| waiting.next_if(|(other, _)| *other == network));
             if let Some((_, port)) = self.all.get(usize::from(network)) {
-                port.put(std::iter::once(first).chain(others.map(|(_, from_run)| from_run)));
+                port.leave(std::iter::once(first).chain(others.map(|(_, from_run)| from_run)));
+                if !ports.iter().any(|known| Arc::ptr_eq(known, port)) {
+                    ports.push(Arc::clone(port));
+                }
             }
         }
+        ports
     }
 }
 
@@ -251,6 +280,7 @@ impl Handle {
         engine.networks.epoch = date.saturating_sub_unsigned(self.shared.clock.now());
         engine.networks.all.push((url.to_owned(), Arc::clone(port)));
         engine.networks.are_done.push(false);
+        engine.networks.lost.push((0, String::new()));
         self.shared.release(engine);
         NetworkedFleet { shared: Arc::clone(&self.shared), network, hooks: Box::new(hooks) }
     }
@@ -271,6 +301,9 @@ fn dated(message: &SharedMessage, schema: Option<&Schema>, epoch: i64) -> Shared
 pub trait NetworkHooks: Send + 'static {
     /// No other program of the network is heard any more.
     fn lose(&self);
+
+    /// True if a signal has come that ends the run.
+    fn is_interrupted(&self) -> bool;
 
     /// An operator asks something over the network.
     fn control(&self, request: ControlRequest, reply: Reply);
@@ -360,6 +393,21 @@ impl Fleet for NetworkedFleet {
 
     fn tell(&self, level: Level, text: String) {
         self.shared.note(level, text);
+    }
+
+    fn count_lost(&self, count: u64, text: &str) {
+        let mut engine = self.shared.lock();
+        if let Some((lost, first)) = engine.networks.lost.get_mut(self.network) {
+            if *lost == 0 {
+                text.clone_into(first);
+            }
+            *lost += count;
+        }
+        self.shared.release(engine);
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.hooks.is_interrupted()
     }
 
     fn alert(&self, kind: &str, subject: &str, text: Option<String>) {

@@ -3,11 +3,11 @@
 use std::any::Any;
 
 use saoms_api::CallError;
-use saoms_api::host::{ServiceCall, cdr};
+use saoms_api::host::ServiceCall;
 use saoms_api::rule::nearest;
+use saoms_lang::OperationSchema;
 use saoms_lang::assembly::ComponentSpec;
-use saoms_lang::schema::Schema;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use super::OrderError;
 
@@ -16,15 +16,10 @@ use super::OrderError;
 pub(super) struct JsonCall {
     /// The service in the provider's declaration.
     pub(super) service: String,
-    operation: u32,
+    operation: OperationSchema,
     arguments: Vec<u8>,
-    /// The schema of a message with the reply as its only field; `None` for an operation without one.
-    reply_schema: Option<Schema>,
     reply: Value,
 }
-
-/// The name of the field of that message.
-const REPLY: &str = "reply";
 
 impl JsonCall {
     /// The call of an operation that a component offers, in this of its services if one is named.
@@ -61,16 +56,10 @@ impl JsonCall {
                 return Err(unknown(spec, operation, operations.iter().map(|(_, one, _)| name(one)).collect()));
             }
         };
-        let reply = &declared["reply"];
-        let reply_schema = (!reply.is_null())
-            .then(|| Schema::of(&json!({"name": REPLY, "fields": [{"name": REPLY, "type": reply}]})))
-            .transpose()
-            .map_err(|error| OrderError::Operation(error.to_string()))?;
-        let arguments = encoded(declared, arguments).map_err(|error| {
-            let signature = saoms_lang::registry::signature(declared);
-            OrderError::Arguments(format!("operation `{signature}`: {error}"))
-        })?;
-        Ok(JsonCall { service: service.to_owned(), operation: number, arguments, reply_schema, reply: Value::Null })
+        let form = OperationSchema::of(declared, number).map_err(|error| OrderError::Operation(error.to_string()))?;
+        let arguments = encoded(&form, declared, arguments)
+            .map_err(|error| OrderError::Arguments(format!("operation `{}`: {error}", form.signature)))?;
+        Ok(JsonCall { service: service.to_owned(), operation: form, arguments, reply: Value::Null })
     }
 
     /// The reply; `null` where there is none.
@@ -92,8 +81,8 @@ fn unknown(spec: &ComponentSpec, operation: &str, known: Vec<String>) -> OrderEr
 }
 
 /// The arguments in CDR.
-fn encoded(declared: &Value, arguments: &[(String, Value)]) -> Result<Vec<u8>, String> {
-    let fields = declared["arguments"].as_array().cloned().unwrap_or_default();
+fn encoded(form: &OperationSchema, declared: &Value, arguments: &[(String, Value)]) -> Result<Vec<u8>, String> {
+    let fields = declared["arguments"].as_array().map(Vec::as_slice).unwrap_or_default();
     let mut given = Map::new();
     for (name, value) in arguments {
         let field = fields.iter().find(|field| field["name"] == name.as_str());
@@ -104,19 +93,15 @@ fn encoded(declared: &Value, arguments: &[(String, Value)]) -> Result<Vec<u8>, S
             return Err(format!("argument `{name}` is given twice"));
         }
     }
-    if fields.is_empty() {
-        return match arguments.first() {
-            Some((name, _)) => Err(format!("it takes no arguments, found `{name}`")),
-            None => Ok(cdr::encode(&())),
-        };
+    if let (true, Some((name, _))) = (fields.is_empty(), arguments.first()) {
+        return Err(format!("it takes no arguments, found `{name}`"));
     }
-    let schema = Schema::of(&json!({"name": declared["name"], "fields": fields})).map_err(|error| error.to_string())?;
-    schema.encode(&Value::Object(given)).map_err(|error| error.to_string())
+    form.encode_arguments(&Value::Object(given)).map_err(|error| error.to_string())
 }
 
 impl ServiceCall for JsonCall {
     fn operation(&self) -> u32 {
-        self.operation
+        self.operation.number
     }
 
     fn typed(&mut self) -> Option<(&mut dyn Any, &mut dyn Any)> {
@@ -128,9 +113,8 @@ impl ServiceCall for JsonCall {
     }
 
     fn reply(&mut self, bytes: &[u8]) -> Result<(), CallError> {
-        let Some(schema) = &self.reply_schema else { return Ok(()) };
-        let message = schema.decode(bytes).map_err(|error| CallError::Mismatch { message: error.to_string() })?;
-        self.reply = message[REPLY].clone();
+        let reply = self.operation.decode_reply(bytes);
+        self.reply = reply.map_err(|error| CallError::Mismatch { message: error.to_string() })?;
         Ok(())
     }
 }

@@ -1,98 +1,29 @@
 //! The way of an order: it is checked when it comes, waits for its instant, and takes effect before the executions that
 //! are due then.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use saoms_api::host::Invocation;
-use saoms_api::host::contain::contained;
 use saoms_api::{CallError, Cause, Failure, Level, Time};
 use saoms_lang::assembly::ComponentSpec;
 use serde_json::Value;
 
 use super::call::JsonCall;
+use super::pending::{InCode, OrderInCode, Pending, PendingOrder, Work};
 use super::remote::RemoteCall;
 use super::ticket::{Answering, OrderTicket, ticket};
 use super::{Order, OrderError};
 use crate::observe::Occurrence;
-use crate::schedule::change::{self, SetError};
+use crate::schedule::change::{self, LEAVING, SetError};
 use crate::schedule::component::body::Body;
+use crate::schedule::engine::Engine;
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::engine::memory::{SetForm, value_hash};
 use crate::schedule::engine::slot::NEVER;
-use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::inject::{self, InjectedContent, Injection, OUTSIDE_NAME};
 use crate::schedule::settings::nanos;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::STOPPED;
-
-/// An order that was accepted.
-#[derive(Debug)]
-pub(crate) struct PendingOrder {
-    order: Order,
-    /// Where the answer goes; `None` if it was given.
-    answering: Option<Answering>,
-    /// The record in the journal of the order of which this is a part.
-    part_of: Option<Cause>,
-}
-
-/// Orders that wait for a component whose code runs, in the order in which they came.
-#[derive(Debug, Default)]
-pub(crate) struct PendingOrders {
-    waiting: VecDeque<(u32, Pending)>,
-}
-
-impl PendingOrders {
-    /// The orders that were answered when they were accepted: whoever gave them does not give them again.
-    pub(in crate::schedule) fn accepted(&self) -> impl Iterator<Item = &PendingOrder> {
-        self.waiting.iter().filter_map(|(_, pending)| match pending {
-            Pending::Order(order) if order.answering.is_none() && order.part_of.is_none() => Some(&**order),
-            _ => None,
-        })
-    }
-}
-
-/// What waits for a component.
-#[derive(Debug)]
-enum Pending {
-    Order(Box<PendingOrder>),
-    /// A call of another program.
-    Call(Box<RemoteCall>),
-}
-
-impl Pending {
-    /// True if nobody wants it any more.
-    fn is_cancelled(&self, now: u64) -> bool {
-        match self {
-            Pending::Order(order) => order.is_cancelled(),
-            Pending::Call(call) => call.is_late(now),
-        }
-    }
-}
-
-/// What a component carries out itself.
-pub(crate) enum InCode {
-    Order(OrderInCode),
-    /// A call of another program, and the record that it follows from.
-    Call(RemoteCall, Cause),
-}
-
-/// An order that a component carries out itself: what its code gets, and its answer.
-pub(crate) struct OrderInCode {
-    order: Order,
-    answering: Option<Answering>,
-    /// Its record in the journal.
-    cause: Cause,
-    /// `None` once it has begun.
-    work: Option<Work>,
-    answer: Option<Result<Value, OrderError>>,
-}
-
-enum Work {
-    /// The specification with the new value.
-    Set(Box<ComponentSpec>),
-    Call(JsonCall),
-}
 
 /// Checks an order and queues it for its time, or for the next instant.
 ///
@@ -108,7 +39,7 @@ pub(in crate::schedule) fn accept(shared: &Shared, order: Order, at: Option<Time
         return Ok(ticket);
     }
     let mut engine = shared.lock();
-    if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
+    if engine.is_closed() {
         return Err(OrderError::Ending);
     }
     engine.judge(&order)?;
@@ -119,25 +50,9 @@ pub(in crate::schedule) fn accept(shared: &Shared, order: Order, at: Option<Time
         }
         None => Some(answering),
     };
+    engine.add_order(shared.clock.now(), at, PendingOrder { order, answering, part_of: None });
     shared.release(engine);
-    inject::add_order(shared, at, PendingOrder { order, answering, part_of: None });
     Ok(ticket)
-}
-
-impl PendingOrder {
-    /// An order that was accepted by an earlier program, and has no answer any more.
-    pub(in crate::schedule) fn recalled(order: Order) -> PendingOrder {
-        PendingOrder { order, answering: None, part_of: None }
-    }
-
-    /// Its line.
-    pub(in crate::schedule) fn line(&self) -> String {
-        self.order.to_string()
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.answering.as_ref().is_some_and(Answering::is_cancelled)
-    }
 }
 
 impl Engine {
@@ -197,10 +112,10 @@ impl Engine {
         Ok(())
     }
 
-    /// Has a component told that it is stopped, or released.
-    pub(in crate::schedule) fn queue_stopped(&mut self, index: u32, is_stopped: bool, cause: Cause) {
+    /// Has a component told of itself by a live property: that it is stopped, or is to leave, or that this is over.
+    pub(in crate::schedule) fn queue_told(&mut self, index: u32, property: &str, value: bool, cause: Cause) {
         let component = self.slots[index as usize].name.to_string();
-        let order = Order::Set { component, property: STOPPED.to_owned(), value: is_stopped.to_string() };
+        let order = Order::Set { component, property: property.to_owned(), value: value.to_string() };
         let pending = PendingOrder { order, answering: None, part_of: Some(cause) };
         self.orders.waiting.push_back((index, Pending::Order(Box::new(pending))));
     }
@@ -210,6 +125,19 @@ impl Engine {
         self.orders.waiting.push_back((index, Pending::Call(Box::new(call))));
         self.look_at = 0;
         self.wake |= self.roles.asleep_until != 0;
+    }
+
+    /// Has a component take the values of an earlier specification back, before its next execution.
+    pub(in crate::schedule) fn queue_take_back(&mut self, index: u32, before: Arc<ComponentSpec>) {
+        self.orders.waiting.push_front((index, Pending::TakeBack(before)));
+        self.look_at = 0;
+        self.wake |= self.roles.asleep_until != 0;
+    }
+
+    /// Forgets that a component has to take values back: another change has given it others.
+    pub(in crate::schedule) fn forget_take_back(&mut self, index: u32) {
+        let is_over = |pending: &Pending| matches!(pending, Pending::TakeBack(_));
+        self.orders.waiting.retain(|(waiting, pending)| *waiting != index || !is_over(pending));
     }
 
     /// The component of this path, which may have the name of a service behind it.
@@ -227,16 +155,21 @@ impl Engine {
 
     /// What the code of a component has to do for an order.
     fn work(&self, order: &Order, number: u32, service: Option<&str>) -> Result<Work, OrderError> {
-        let spec = &self.slots[number as usize].spec;
+        let slot = &self.slots[number as usize];
+        let spec = &slot.spec;
         match order {
             Order::Set { component, property, value } => match service {
-                None => change::changed(spec, property, value)
-                    .map(|changed| Work::Set(Box::new(changed)))
-                    .map_err(OrderError::Set),
+                None => {
+                    let changed = change::changed(spec, property, value).map_err(OrderError::Set)?;
+                    match slot.ends_emergency_stop(property, &changed) {
+                        Some(why) => Err(OrderError::Set(SetError::NotNow { component: component.clone(), why })),
+                        None => Ok(Work::Set(Box::new(changed))),
+                    }
+                }
                 Some(_) => Err(OrderError::Component(self.unknown(component))),
             },
             Order::Call { operation, arguments, .. } => {
-                JsonCall::new(spec, service, operation, arguments).map(Work::Call)
+                JsonCall::new(spec, service, operation, arguments).map(|call| Work::Call(Box::new(call)))
             }
             _ => Err(OrderError::Ending),
         }
@@ -262,7 +195,8 @@ impl Engine {
             }
             Order::Publish { .. } => return,
         };
-        if pending.is_cancelled() {
+        // One that was withdrawn has no effect, and one that has an effect is not withdrawn.
+        if pending.answering.as_ref().is_some_and(|answering| !answering.begin()) {
             return;
         }
         let answer = match self.periodic(request.0) {
@@ -286,6 +220,17 @@ impl Engine {
             let text = format!("the order `{order}` is refused: {error}");
             self.note(now, Occurrence::Note { level: Level::Warning, text });
         }
+    }
+
+    /// Answers the orders that wait for components when the run ends: none of them begins any more.
+    pub(in crate::schedule) fn end_orders(&mut self) {
+        self.orders.waiting.retain_mut(|(_, pending)| {
+            let Pending::Order(pending) = pending else { return true };
+            let Some(answering) = pending.answering.take() else { return true };
+            // Whoever gave it may have withdrawn it, or gone.
+            let _ = answering.give(Err(OrderError::Ending));
+            false
+        });
     }
 
     /// True if an order waits for this component, which runs on a worker thread.
@@ -335,6 +280,14 @@ impl Engine {
                         self.reply_to(&call, Err(CallError::NotRunning { provider }));
                         continue;
                     }
+                    Pending::TakeBack(_) => {
+                        // Its next instance has them.
+                        let slot = &mut self.slots[index as usize];
+                        if let Some(body) = &mut slot.body {
+                            body.part.spec = Arc::clone(&slot.spec);
+                        }
+                        continue;
+                    }
                 };
                 if let (Some(_), Order::Set { property, value, .. }) = (pending.part_of, &pending.order) {
                     self.set_at_rest(index, property, value);
@@ -359,6 +312,10 @@ impl Engine {
                 body.part.order = Some(Box::new(InCode::Call(*call, cause)));
                 return;
             }
+            Pending::TakeBack(before) => {
+                body.part.order = Some(Box::new(InCode::TakeBack(before, None)));
+                return;
+            }
         };
         let work = match &order {
             Order::Set { component, .. } | Order::Call { component, .. } => {
@@ -367,9 +324,12 @@ impl Engine {
             _ => return,
         };
         match work {
+            // It was withdrawn this moment.
+            Ok(_) if answering.as_ref().is_some_and(|answering| !answering.begin()) => {}
             Ok(work) => {
+                let is_told = part_of.is_some();
                 let cause = part_of.unwrap_or_else(|| self.record_outside(now, OUTSIDE_NAME, order.to_string()));
-                let order = OrderInCode { order, answering, cause, work: Some(work), answer: None };
+                let order = OrderInCode { order, answering, is_told, cause, work: Some(work), answer: None };
                 body.part.order = Some(Box::new(InCode::Order(order)));
             }
             Err(error) => self.answer(now, &order, answering, Err(error)),
@@ -387,6 +347,7 @@ impl Engine {
         let order = match body.part.order.take().map(|order| *order) {
             Some(InCode::Order(order)) => order,
             Some(InCode::Call(call, _)) => return self.finish_remote_call(index, call, failure),
+            Some(InCode::TakeBack(_, refusal)) => return self.note_taken_back(&body.part, refusal, now),
             None => return,
         };
         let slot = &mut self.slots[index as usize];
@@ -396,6 +357,10 @@ impl Engine {
             (None, None) => Ok(Value::Null),
         };
         let set = match (&order.order, &answer) {
+            (Order::Set { property, value, .. }, answer) if property == LEAVING && order.is_told => {
+                slot.leaving.answer(value, answer.as_ref().err());
+                None
+            }
             (Order::Set { property, value, .. }, Ok(_)) if property != STOPPED => {
                 let (property, value) = (property.clone(), value.clone());
                 Some(SetForm { instead_of: value_hash(&slot.spec, &property), property, value })
@@ -408,6 +373,7 @@ impl Engine {
             body.part.lasting.touch();
         }
         if let Some(set) = set {
+            self.slots[index as usize].is_wanted = None;
             self.note_set(index, set, now);
         }
         let OrderInCode { order, answering, .. } = order;
@@ -421,7 +387,7 @@ fn not_running(component: &str, order: &Order) -> OrderError {
         Order::Set { .. } => {
             OrderError::Set(SetError::NotNow { component: component.to_owned(), why: "it does not run".to_owned() })
         }
-        _ => OrderError::Call(format!("component `{component}` does not run")),
+        _ => OrderError::NotRunning(format!("component `{component}` does not run")),
     }
 }
 
@@ -438,11 +404,16 @@ impl Body {
                 self.part.order = Some(Box::new(InCode::Call(call, cause)));
                 return served;
             }
+            Some(InCode::TakeBack(before, _)) => {
+                let refusal = self.take_back(Arc::clone(&before)).err();
+                self.part.order = Some(Box::new(InCode::TakeBack(before, refusal)));
+                return Ok(());
+            }
             None => return Ok(()),
         };
         let answer = match order.work.take() {
             Some(Work::Set(changed)) => Ok(self.update(*changed).map_err(OrderError::Set)),
-            Some(Work::Call(call)) => self.answer(shared, call, order.cause),
+            Some(Work::Call(call)) => self.answer(shared, *call, order.cause),
             None => Ok(Ok(Value::Null)),
         };
         let result = answer.map(|answer| order.answer = Some(answer));
@@ -452,18 +423,8 @@ impl Body {
 
     /// Gives the component new values of its properties.
     fn update(&mut self, changed: ComponentSpec) -> Result<Value, SetError> {
-        let updated = match &mut self.instance {
-            Some(instance) => contained(|| instance.update(&changed.values)).and_then(|updated| updated),
-            None => Err(Failure::new("it has just ended")),
-        };
-        let refused = |failure| SetError::Refused { component: self.part.name.to_string(), failure };
-        updated.map_err(refused)?;
-        self.part.spec = Arc::new(changed);
-        if self.part.lasting.saves_at_once {
-            self.part.lasting.touch();
-            // What it cannot save now, it saves after the next execution, or fails then.
-            let _ = self.save_for_later();
-        }
+        let taken = self.take_values(Arc::new(changed));
+        taken.map_err(|failure| SetError::Refused { component: self.part.name.to_string(), failure })?;
         Ok(Value::Null)
     }
 
@@ -476,6 +437,9 @@ impl Body {
     ) -> Result<Result<Value, OrderError>, Failure> {
         let service = call.service.clone();
         let served = self.serve(shared, &mut Invocation { service: &service, call: &mut call }, cause)?;
-        Ok(served.map(|()| call.into_reply()).map_err(|error| OrderError::Call(error.to_string())))
+        Ok(served.map(|()| call.into_reply()).map_err(|error| match error {
+            CallError::Busy { .. } => OrderError::Busy(error.to_string()),
+            error => OrderError::Call(error.to_string()),
+        }))
     }
 }

@@ -16,11 +16,17 @@ pub enum OrderError {
     Operation(String),
     /// The arguments are none of the operation.
     Arguments(String),
-    /// The component does not run, or failed in the call.
+    /// The component failed in the call.
     Call(String),
-    /// It has no answer yet: code of the component has not returned, the fleet still starts, or it is paused. It was
-    /// withdrawn, unless it has begun.
+    /// The component does not run.
+    NotRunning(String),
+    /// A component that the called one calls is in the middle of an execution.
+    Busy(String),
+    /// It has not begun: code of the component has not returned, the fleet still starts, or it is paused. It was
+    /// withdrawn.
     NotYet,
+    /// It has begun, and code of the component has not returned. Whether it takes effect is not known.
+    Begun,
     /// The run ends.
     Ending,
 }
@@ -31,11 +37,16 @@ impl fmt::Display for OrderError {
             OrderError::Component(error) => error.fmt(formatter),
             OrderError::Set(error) => error.fmt(formatter),
             OrderError::Message(error) => error.fmt(formatter),
-            OrderError::Operation(message) | OrderError::Arguments(message) | OrderError::Call(message) => {
-                formatter.write_str(message)
-            }
+            OrderError::Operation(message)
+            | OrderError::Arguments(message)
+            | OrderError::Call(message)
+            | OrderError::NotRunning(message)
+            | OrderError::Busy(message) => formatter.write_str(message),
             OrderError::NotYet => formatter.write_str(
                 "no answer yet: the code of the component has not returned, or the fleet has not started; the order is withdrawn",
+            ),
+            OrderError::Begun => formatter.write_str(
+                "no answer yet: the order has begun, and the code of the component has not returned",
             ),
             OrderError::Ending => formatter.write_str("the run ends"),
         }

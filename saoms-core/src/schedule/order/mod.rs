@@ -4,6 +4,7 @@
 mod call;
 mod carry_out;
 mod error;
+mod pending;
 mod read;
 mod remote;
 mod ticket;
@@ -14,11 +15,12 @@ use std::time::Duration;
 use saoms_api::host::format_duration;
 use serde_json::Value;
 
-pub(super) use carry_out::{InCode, PendingOrder, PendingOrders, accept};
+pub(super) use carry_out::accept;
 pub use error::OrderError;
+pub(super) use pending::{InCode, PendingOrder, PendingOrders};
 pub use read::TimedOrder;
 pub(super) use remote::RemoteCall;
-pub use ticket::OrderTicket;
+pub use ticket::{OrderTicket, OrderWithdrawal};
 
 /// An order of an operator to a running fleet. [`Order::read`] reads what [`Display`](fmt::Display) writes.
 ///

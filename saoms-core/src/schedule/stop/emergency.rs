@@ -11,7 +11,7 @@ use saoms_api::{Cause, Level};
 use saoms_lang::assembly::ComponentSpec;
 
 use crate::observe::Occurrence;
-use crate::schedule::change;
+use crate::schedule::change::{self, LEAVING, Leaving};
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::slot::{NEVER, Slot, SlotState};
 use crate::schedule::members::UnknownComponent;
@@ -27,6 +27,18 @@ const EMERGENCY_STOP: &str = "emergency_stop";
 pub fn hears_stops(spec: &ComponentSpec) -> bool {
     let declared = spec.class.declaration().property(STOPPED);
     declared.is_some_and(|one| one.live && one.kind == PropertyKind::Boolean)
+}
+
+impl Slot {
+    /// Why a component that is stopped does not take a new value of a property: it would move before its release.
+    pub(in crate::schedule) fn ends_emergency_stop(&self, property: &str, changed: &ComponentSpec) -> Option<String> {
+        let is_set = |spec: &ComponentSpec| {
+            let stopped = change::changed(spec, STOPPED, "true");
+            stopped.is_ok_and(|stopped| stopped.values == spec.values)
+        };
+        let ends = property == STOPPED && self.is_stopped() && !is_set(changed);
+        ends.then(|| "it is stopped by `saoms estop`, and goes on after `saoms release`".to_owned())
+    }
 }
 
 impl Engine {
@@ -49,7 +61,11 @@ impl Engine {
         if !paths.is_empty() {
             return paths.iter().map(|path| self.periodic(path)).collect();
         }
-        Ok((0..self.slots.len() as u32).filter(|index| self.slots[*index as usize].is_stopped()).collect())
+        let is_stopped = |index: &u32| {
+            let slot = &self.slots[*index as usize];
+            slot.is_member() && slot.is_stopped()
+        };
+        Ok((0..self.slots.len() as u32).filter(is_stopped).collect())
     }
 
     /// Stops the hardware of components at once: its functions are called and its heartbeat ends. It may be called in
@@ -87,7 +103,7 @@ impl Engine {
             self.note_differs(*index, now);
             let slot = &mut self.slots[*index as usize];
             if slot.hears_stops {
-                self.queue_stopped(*index, is_stopped, cause);
+                self.queue_told(*index, STOPPED, is_stopped, cause);
             } else if !is_stopped && slot.state == SlotState::Active && slot.body.is_some() {
                 self.react_to_news(*index, now);
             }
@@ -103,17 +119,22 @@ impl Engine {
                 body.part.spec = Arc::clone(&slot.spec);
             }
         }
+        if property == LEAVING {
+            slot.leaving = match (value == "true", slot.state) {
+                // It says more once it has started.
+                (true, SlotState::Starting) => Leaving::Finishing,
+                (true, _) => Leaving::Finished,
+                (false, _) => Leaving::Not,
+            };
+        }
     }
 
-    /// The specification of a component that replaces one: where that is stopped, the new one is, too.
-    pub(in crate::schedule) fn still_stopped(&self, spec: ComponentSpec) -> ComponentSpec {
-        let known = self.numbers.get(spec.path.as_str()).map(|number| &self.slots[*number as usize]);
-        match known {
-            Some(slot) if slot.is_stopped() && hears_stops(&spec) => {
-                change::changed(&spec, STOPPED, "true").unwrap_or(spec)
-            }
-            _ => spec,
+    /// The specification of a component that takes the place of another one: where that is stopped, it is, too.
+    pub(in crate::schedule) fn still_stopped(&self, number: u32, spec: Arc<ComponentSpec>) -> Arc<ComponentSpec> {
+        if !self.slots[number as usize].is_stopped() || !hears_stops(&spec) {
+            return spec;
         }
+        change::changed(&spec, STOPPED, "true").map_or(spec, Arc::new)
     }
 
     /// Leaves out the execution of a component that is stopped and does not hear of it: its phase stays.
@@ -151,7 +172,7 @@ impl Engine {
             return self.note(now, Occurrence::Alert { kind, subject, text: Some(text) });
         }
         self.note(now, Occurrence::Note { level: Level::Warning, text });
-        if !components.is_empty() && !self.slots.iter().any(Slot::is_stopped) {
+        if !components.is_empty() && !self.slots.iter().any(|slot| slot.is_member() && slot.is_stopped()) {
             self.note(now, Occurrence::Alert { kind, subject, text: None });
         }
     }

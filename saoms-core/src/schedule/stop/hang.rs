@@ -48,8 +48,9 @@ fn look(fleet: &Weak<Shared>) -> Option<Duration> {
     if fleet.ended.load(Ordering::Acquire) {
         return None;
     }
-    let now = fleet.clock.now_without_pause();
     let mut engine = fleet.lock();
+    // Under the lock: at the end of a pause this clock goes back.
+    let now = fleet.clock.now_without_pause();
     let mut shortest = NEVER;
     for index in 0..engine.slots.len() as u32 {
         let stops = engine.with_hardware.contains(&index);

@@ -6,12 +6,11 @@ pub(super) mod takers;
 
 use std::sync::Arc;
 
-use saoms_api::host::SharedMessage;
 use saoms_api::rule::nearest;
 use serde_json::Value;
 
 use super::engine::Engine;
-use super::inject::{InjectError, OUTSIDE_NAME};
+use super::inject::InjectError;
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::observe::{Observer, SentMessage};
@@ -87,14 +86,7 @@ pub(super) fn topics(shared: &Shared) -> Vec<TopicStatus> {
 pub(super) fn retained(shared: &Shared, topic: &str) -> Result<Vec<SentMessage>, InjectError> {
     let engine = shared.lock();
     let id = engine.topic(topic)?;
-    let name = engine.bus.name(id);
-    let sent = |message: SharedMessage| {
-        let sender = message.header().sender;
-        let component = engine.name_of(sender).unwrap_or_else(|| Arc::from(OUTSIDE_NAME));
-        let is_of_other = engine.slots.get(sender as usize).is_none();
-        SentMessage { topic: Arc::clone(name), component, message, is_of_other }
-    };
-    Ok(engine.bus.retained(id).into_iter().map(sent).collect())
+    Ok(engine.retained(id))
 }
 
 /// Lets an observer get the messages of a topic, or no more. Gives the schema of the messages.

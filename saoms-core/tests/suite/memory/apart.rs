@@ -9,7 +9,7 @@ use saoms_api::{Class, Component, Context, Failure, Saved, Subscription};
 use saoms_core::schedule::{InjectedContent, Injection};
 use serde_json::json;
 
-use super::{Count, behind, run};
+use super::{Count, behind, first_number, run};
 use crate::actor::{EchoReference, NUMBERS, Own};
 use crate::fleet::real;
 
@@ -101,8 +101,46 @@ impl Component for Patient {
     }
 }
 
+/// True while the porter carries something.
+static CARRIES: AtomicBool = AtomicBool::new(false);
+
+/// Counts what it carries in the report, and takes long, on a thread of its own.
+#[derive(Class)]
+#[class(name = "porter", periodic, saves, apart)]
+pub(super) struct Porter {
+    carried: u64,
+}
+
+impl Component for Porter {
+    type Properties = ();
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.count("porter.carried", 1);
+        self.carried += 1;
+        CARRIES.store(true, Ordering::SeqCst);
+        sleep(Duration::from_millis(40));
+        CARRIES.store(false, Ordering::SeqCst);
+        context.count("porter.carried", 1);
+        Ok(())
+    }
+
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.info(format!("has carried {}", self.carried));
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::of(&Count { count: self.carried }))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.carried = saved.read::<Count>()?.unwrap_or_default().count;
+        Ok(())
+    }
+}
+
 /// What a crash at this moment would leave.
-fn copy(folder: &Path) -> tempfile::TempDir {
+pub(super) fn copy(folder: &Path) -> tempfile::TempDir {
     let copy = tempfile::tempdir().unwrap();
     std::fs::copy(folder.join("store.log"), copy.path().join("store.log")).unwrap();
     copy
@@ -151,6 +189,32 @@ fn who_called_and_who_was_called_go_back_to_the_same_moment() {
 }
 
 #[test]
+fn the_report_has_no_more_than_what_is_gone_on_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let fleet = "P porter period=5\nT teller period=2";
+    let mut crashes = Vec::new();
+    run(fleet, real(20_000), folder.path(), |handle| {
+        for _ in 0..4 {
+            while !CARRIES.load(Ordering::SeqCst) {
+                sleep(Duration::from_millis(1));
+            }
+            handle.commit(Duration::from_secs(10)).unwrap();
+            crashes.push(copy(folder.path()));
+            while CARRIES.load(Ordering::SeqCst) {
+                sleep(Duration::from_millis(1));
+            }
+        }
+        handle.stop();
+    });
+    crashes.push(folder);
+    for (place, crash) in crashes.iter().enumerate() {
+        let (report, told) = run(fleet, real(100), crash.path(), |_| {});
+        let carried = first_number(behind(&told, "P: has carried "));
+        assert_eq!(report.sections["porter"]["carried"], 2 * carried, "{place}: {told}");
+    }
+}
+
+#[test]
 fn what_a_component_heard_in_vain_is_there_while_it_starts_again() {
     let folder = tempfile::tempdir().unwrap();
     let fleet = "P patient period=3 restart=1ms/5\nT teller period=2";
@@ -167,6 +231,6 @@ fn what_a_component_heard_in_vain_is_there_while_it_starts_again() {
         crash = Some(copy(folder.path()));
         handle.stop();
     });
-    let (_, told) = run(fleet, real(100), crash.unwrap().path(), |_| {});
+    let (_, told) = run(fleet, real(1_000), crash.unwrap().path(), |_| {});
     assert_eq!(told.matches("P: has heard 42").count(), 1, "{told}");
 }

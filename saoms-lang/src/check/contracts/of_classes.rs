@@ -156,11 +156,23 @@ pub(crate) fn unknown(
 
 fn bindings(bindings: &[Binding], so: &str, report: &mut Report<'_>) {
     for binding in bindings {
-        if binding.is_sca && binding.kind == "sca" {
+        if binding.is_sca && binding.kind == "sca" || binding.is_rest() {
             continue;
         }
-        let message = format!("{} is not supported: {so}", quoted(&format!("binding.{}", binding.kind)));
+        let kind = quoted(&format!("binding.{}", binding.kind));
+        if binding.kind == "rest" {
+            let message = format!("{kind} of another namespace is for another runtime, and not supported: {so}");
+            let one = Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message);
+            report.push(one.help(
+                "remove it; if SAOMS is to serve it, write `<saoms:binding.rest .../>` in its place, with a path as `uri` \
+                 of a service, and an address of HTTP as that of a reference",
+            ));
+            continue;
+        }
+        let message = format!("{kind} is not supported: {so}");
         let one = Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message);
-        report.push(one.help("remove it; to reach other machines, use topics and the `url` of a message broker"));
+        report.push(one.help(
+            "remove it; to reach other machines, use `binding.rest`, or topics and the `url` of a message broker",
+        ));
     }
 }

@@ -10,6 +10,7 @@ use crate::check::fleet::{Fleet, Member};
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::unfolding::members::not_a_node;
+use crate::check::web::Web;
 use crate::check::wiring::Wiring;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{Location, Text};
@@ -18,7 +19,7 @@ use crate::syntax::is_local_name;
 /// Checks the nodes of a fleet.
 pub(crate) fn check(
     fleet: &Fleet<'_>,
-    (checks, wiring): (&[ComponentCheck<'_>], &Wiring),
+    (checks, wiring, web): (&[ComponentCheck<'_>], &Wiring, &Web),
     options: &Options,
     report: &mut Report<'_>,
 ) {
@@ -28,7 +29,7 @@ pub(crate) fn check(
     let nodes: BTreeSet<&str> =
         running(fleet).map(|member| member.node.as_str()).filter(|one| !one.is_empty()).collect();
     wanted(&nodes, options, report);
-    wires::unused_deadlines(fleet, wiring, report);
+    wires::unused_deadlines(fleet, wiring, web, report);
     if nodes.is_empty() {
         return;
     }

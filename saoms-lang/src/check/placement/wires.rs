@@ -8,6 +8,7 @@ use crate::check::component::ComponentCheck;
 use crate::check::contracts::offer::Provider;
 use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
+use crate::check::web::Web;
 use crate::check::wiring::Wiring;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::ReferenceDeclaration;
@@ -47,15 +48,17 @@ pub(super) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], wiring: &W
 }
 
 /// Reports deadlines of references through which no call waits for another node.
-pub(super) fn unused_deadlines(fleet: &Fleet<'_>, wiring: &Wiring, report: &mut Report<'_>) {
+pub(super) fn unused_deadlines(fleet: &Fleet<'_>, wiring: &Wiring, web: &Web, report: &mut Report<'_>) {
     for (caller, member) in fleet.members.iter().enumerate() {
         for written in &member.component.references {
             let Some(deadline) = &written.deadline else { continue };
-            let Some(why) = no_wait(fleet, wiring, caller, &written.name) else { continue };
+            let Some(why) = no_wait(fleet, (wiring, web), caller, &written.name) else { continue };
             report.about(member);
             let message = format!("the deadline of {} has no effect: {why}", format_duration(deadline.value));
             let one = Diagnostic::new(&codes::CALL_DEADLINE_UNUSED, deadline.location, message);
-            report.push(one.help("remove it, or give it to the reference of the component that calls another node"));
+            report.push(one.help(
+                "remove it, or give it to the reference of the component that calls another node or a web server",
+            ));
         }
     }
     report.about_all();
@@ -63,12 +66,16 @@ pub(super) fn unused_deadlines(fleet: &Fleet<'_>, wiring: &Wiring, report: &mut 
 
 /// Why no call through a reference of a component waits for another node; `None` where one does, or where what is wrong
 /// with the reference is told.
-fn no_wait(fleet: &Fleet<'_>, wiring: &Wiring, caller: usize, reference: &str) -> Option<String> {
+fn no_wait(fleet: &Fleet<'_>, (wiring, web): (&Wiring, &Web), caller: usize, reference: &str) -> Option<String> {
     let member = &fleet.members[caller];
     let Some(class) = fleet.class_of(caller) else {
         return (!member.runs()).then(|| "the component is a composite, and makes no calls itself".to_owned());
     };
-    let (declared, targets) = class.references.iter().zip(&wiring[caller]).find(|(one, _)| one.name == reference)?;
+    let place = class.references.iter().position(|one| one.name == reference)?;
+    if web.targets.contains_key(&(caller, place)) {
+        return None;
+    }
+    let (declared, targets) = (class.references[place], &wiring[caller][place]);
     let targets = targets.as_ref().filter(|targets| !targets.is_empty())?;
     if RemoteProxy::of(&declared.interface.name).is_some() {
         return Some(format!("calls of {} wait for no answer", quoted(&declared.interface.name)));

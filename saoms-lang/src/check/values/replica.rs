@@ -135,6 +135,8 @@ fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) 
     component.properties.iter_mut().for_each(|property| of_property(property, each));
     for service in &mut component.services {
         each(&mut service.name);
+        let bindings = service.contract.iter_mut().flat_map(|contract| &mut contract.bindings);
+        bindings.filter_map(|binding| binding.uri.as_mut()).for_each(&mut *each);
     }
     for reference in &mut component.references {
         each(&mut reference.name);

@@ -1,5 +1,7 @@
 //! The ends of references: what `target`, bindings of SCA, wires, promotions and autowire give a reference.
 
+use std::rc::Rc;
+
 use super::Wires;
 use super::target::{Target, target, uri};
 use super::uri::{has_room, spread};
@@ -7,14 +9,16 @@ use crate::check::contracts::offer::{Provider, ReferenceId, parts};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::ReferenceElement;
+use crate::model::{Binding, Part, ReferenceElement};
 use crate::registry::InterfaceDeclaration;
 use crate::source::{Location, Text};
 
 /// The services that a reference leads to.
 #[derive(Default)]
-pub(super) struct Ends {
+pub(super) struct Ends<'f> {
     pub(super) all: Vec<End>,
+    /// Those of the web.
+    pub(super) web: Vec<WebEnd<'f>>,
     /// True if a target is wrong, which is reported, or cannot be looked at: nothing more is said about the reference.
     pub(super) is_unknown: bool,
     /// The places of the targets that the component itself gives it, as far as they count.
@@ -28,6 +32,33 @@ pub(super) struct End {
     pub(super) place: Location,
 }
 
+/// A service of the web that a reference leads to: a binding, and the reference that has it.
+#[derive(Clone, Copy)]
+pub(crate) struct WebEnd<'f> {
+    pub(crate) binding: &'f Binding,
+    pub(crate) reference: &'f ReferenceElement,
+}
+
+impl<'f> WebEnd<'f> {
+    /// Those that a reference writes.
+    pub(crate) fn of(reference: &'f ReferenceElement) -> impl Iterator<Item = WebEnd<'f>> {
+        let bindings = reference.contract().bindings.iter().filter(|binding| binding.is_rest());
+        bindings.map(move |binding| WebEnd { binding, reference })
+    }
+
+    /// The place of its address, or of its binding.
+    pub(crate) fn place(&self) -> Location {
+        self.binding.uri.as_ref().filter(|uri| !uri.is_empty()).map_or(self.binding.tag(), |uri| uri.location)
+    }
+}
+
+impl Ends<'_> {
+    /// True if it leads nowhere.
+    fn is_empty(&self) -> bool {
+        self.all.is_empty() && self.web.is_empty()
+    }
+}
+
 impl<'f> Wires<'f, '_> {
     /// All ends of a reference, those of the components around it included.
     pub(super) fn ends(
@@ -35,8 +66,8 @@ impl<'f> Wires<'f, '_> {
         place: ReferenceId<'f>,
         interface: &'f InterfaceDeclaration,
         report: &mut Report<'_>,
-    ) -> Ends {
-        let (fleet, promoted) = (self.fleet, self.promoted);
+    ) -> Ends<'f> {
+        let (fleet, promoted) = (self.fleet, Rc::clone(&self.promoted));
         let mut ends = self.level(place, Some(interface), report);
         // That the reference of a composite has too many is reported where it has them.
         ends.is_unknown |= ends.written.len() > 1
@@ -48,21 +79,24 @@ impl<'f> Wires<'f, '_> {
         for outer in promoted.to.get(&place).into_iter().flatten().filter(|_| !is_differing) {
             let more = self.ends(*outer, interface, report);
             around.all.extend(more.all);
+            around.web.extend(more.web);
             around.is_unknown |= more.is_unknown;
         }
         // What is around a composite that runs by itself is the domain: the components of all such composites.
         for text in promoted.outermost.get(&place).into_iter().flatten() {
             self.add(text, (0, None), true, Some(interface), &mut around, report);
         }
+        around.web.extend(promoted.outermost_web.get(&place).into_iter().flatten());
         let reference = fleet.members[place.0].component.reference(place.1);
-        let is_replaced = !around.all.is_empty() && !ends.all.is_empty() && !keeps_own(fleet, place, reference);
+        let is_replaced = !around.is_empty() && !ends.is_empty() && !keeps_own(fleet, place, reference);
         if is_replaced {
-            (ends.all, ends.is_unknown) = (around.all, around.is_unknown);
+            (ends.all, ends.web, ends.is_unknown) = (around.all, around.web, around.is_unknown);
         } else {
             ends.all.extend(around.all);
+            ends.web.extend(around.web);
             ends.is_unknown |= around.is_unknown;
         }
-        let has_none = ends.all.is_empty() && !ends.is_unknown && ends.written.is_empty();
+        let has_none = ends.is_empty() && !ends.is_unknown && ends.written.is_empty();
         if has_none && self.is_autowired(place, reference) {
             return self.autowired(place, reference, interface, report);
         }
@@ -75,7 +109,7 @@ impl<'f> Wires<'f, '_> {
         (member, name): ReferenceId<'_>,
         interface: Option<&'f InterfaceDeclaration>,
         report: &mut Report<'_>,
-    ) -> Ends {
+    ) -> Ends<'f> {
         let fleet = self.fleet;
         let scope = fleet.members[member].scope;
         let wires = self.wires_from((member, name));
@@ -87,6 +121,8 @@ impl<'f> Wires<'f, '_> {
         if let Some(reference) = fleet.members[member].component.reference(name) {
             let by_binding =
                 reference.contract().bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+            ends.web.extend(WebEnd::of(reference));
+            is_said |= !ends.web.is_empty();
             for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref())) {
                 is_said = true;
                 self.add(text, (scope, own), !is_replaced, interface, &mut ends, report);
@@ -99,6 +135,7 @@ impl<'f> Wires<'f, '_> {
         // (SCA Assembly 1.1, 5.3).
         let inner = fleet.inner(member).filter(|_| !is_said);
         let declared = inner.into_iter().flat_map(|inner| inner.references()).find(|one| one.name == name);
+        ends.web.extend(declared.into_iter().flat_map(WebEnd::of));
         for text in declared.map_or(&[][..], |declared| &declared.targets) {
             let is_inside = inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
             let help = "use `<wire>` to wire components inside the composite: the target of a composite's reference \
@@ -117,7 +154,7 @@ impl<'f> Wires<'f, '_> {
         (scope, own): (usize, Option<usize>),
         counts: bool,
         interface: Option<&'f InterfaceDeclaration>,
-        ends: &mut Ends,
+        ends: &mut Ends<'f>,
         report: &mut Report<'_>,
     ) {
         if !has_room(&self.ends_left, text, scope, self.fleet, report) {
@@ -154,7 +191,7 @@ impl<'f> Wires<'f, '_> {
         reference: Option<&ReferenceElement>,
         interface: &'f InterfaceDeclaration,
         report: &mut Report<'_>,
-    ) -> Ends {
+    ) -> Ends<'f> {
         let fleet = self.fleet;
         let (member, name) = place;
         let own = &fleet.members[member];

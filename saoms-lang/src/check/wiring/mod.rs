@@ -20,6 +20,7 @@ mod wire;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashSet};
+use std::rc::Rc;
 
 use crate::check::contracts::offer::{Provider, ReferenceId};
 use crate::check::fleet::Fleet;
@@ -27,6 +28,7 @@ use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::wiring::autowire::Autowire;
 use crate::check::wiring::call_cycle::CallCycles;
+pub(crate) use crate::check::wiring::ends::WebEnd;
 use crate::check::wiring::ends::{End, Ends};
 use crate::check::wiring::promotion::Promoted;
 use crate::check::wiring::target::target;
@@ -42,21 +44,26 @@ use crate::source::Location;
 /// from being known, which is reported, or that are taken as given.
 pub(crate) type Wiring = Vec<Vec<Option<Vec<Provider>>>>;
 
+/// The services of the web to which references of components lead, by the component and the place of the reference in
+/// its class.
+pub(crate) type WebEnds<'f> = BTreeMap<(usize, usize), Vec<WebEnd<'f>>>;
+
 /// Resolves all promotions, targets and wires, and checks what they come to.
-pub(crate) fn check(fleet: &Fleet<'_>, options: &Options, report: &mut Report<'_>) -> Wiring {
-    let promoted = promotion::check(fleet, report);
+pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, options: &'f Options, report: &mut Report<'_>) -> (Wiring, WebEnds<'f>) {
+    let promoted = Rc::new(promotion::check(fleet, report));
     let ends_left = Budget::of(WIRE_ENDS);
     let (wires, dangling) = wires(fleet, options, &ends_left, report);
     let autowire = Autowire::default();
     let mut all = Wires {
         fleet,
         options,
-        promoted: &promoted,
+        promoted,
         wires,
         dangling,
         autowire,
         ends_left,
         useless: RefCell::default(),
+        web: WebEnds::default(),
     };
     let mut circles = CallCycles::default();
     let mut wiring = Wiring::with_capacity(fleet.members.len());
@@ -67,8 +74,8 @@ pub(crate) fn check(fleet: &Fleet<'_>, options: &Options, report: &mut Report<'_
             wiring.push(Vec::new());
             continue;
         };
-        let references = class.references.iter().map(|&declared| {
-            let ends = all.of_class(member, declared, report)?;
+        let references = class.references.iter().enumerate().map(|(place, &declared)| {
+            let ends = all.of_class((member, place), declared, report)?;
             for end in &ends {
                 circles.add(member, &declared.name, end.provider, end.place, fleet);
             }
@@ -78,18 +85,19 @@ pub(crate) fn check(fleet: &Fleet<'_>, options: &Options, report: &mut Report<'_
     }
     report.about_all();
     circles.check(fleet, report);
-    wiring
+    (wiring, all.web)
 }
 
 struct Wires<'f, 'a> {
     fleet: &'f Fleet<'a>,
     options: &'f Options,
-    promoted: &'f Promoted<'f>,
+    promoted: Rc<Promoted<'f>>,
     wires: BTreeMap<ReferenceId<'f>, Vec<Wire<'f>>>,
     dangling: DanglingNames<'f>,
     autowire: Autowire<'f>,
     ends_left: Budget,
     useless: RefCell<UselessAutowire>,
+    web: WebEnds<'f>,
 }
 
 impl<'f, 'a> Wires<'f, 'a> {
@@ -97,16 +105,24 @@ impl<'f, 'a> Wires<'f, 'a> {
     /// wrong with them is reported.
     fn of_class(
         &mut self,
-        member: usize,
+        (member, number): (usize, usize),
         declared: &'f ReferenceDeclaration,
         report: &mut Report<'_>,
     ) -> Option<Vec<End>> {
         let place = (member, declared.name.as_str());
-        let Ends { mut all, is_unknown, .. } = self.ends(place, &declared.interface, report);
+        let Ends { mut all, web, is_unknown, .. } = self.ends(place, &declared.interface, report);
+        let leads_to_web = !web.is_empty();
+        if leads_to_web {
+            self.too_many_with_web(place, &all, &web, report);
+            self.web.insert((member, number), web);
+        }
         if is_unknown {
             return None;
         }
         let Some(first) = all.first().copied() else {
+            if leads_to_web {
+                return Some(all);
+            }
             return (!self.unwired(place, declared, report)).then_some(all);
         };
         let multiplicity = self.fleet.multiplicity(place).filter(|one| !one.is_many());
@@ -124,6 +140,25 @@ impl<'f, 'a> Wires<'f, 'a> {
             all.retain(|end| seen.insert(end.provider));
         }
         Some(all)
+    }
+
+    /// Reports more targets than a reference allows where some of them are services of the web.
+    fn too_many_with_web(
+        &self,
+        place @ (member, name): ReferenceId<'f>,
+        all: &[End],
+        web: &[WebEnd<'f>],
+        report: &mut Report<'_>,
+    ) {
+        let Some(one) = self.fleet.multiplicity(place).filter(|one| !one.is_many()) else { return };
+        // A target beside a binding is reported in SCA 1.1, however many it takes.
+        let own = self.fleet.members[member].component.reference(name);
+        let is_told = own.is_some_and(|own| !own.targets.is_empty() && WebEnd::of(own).next().is_some())
+            && self.fleet.members[member].composite.version.is_1_1();
+        if !is_told {
+            let places = all.iter().map(|end| end.place).chain(web.iter().map(WebEnd::place));
+            self.too_many(place, &places.collect::<Vec<_>>(), false, one, Severity::Error, report);
+        }
     }
 
     /// The wires from a reference.

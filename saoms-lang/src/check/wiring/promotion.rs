@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::ends::WebEnd;
 use super::promoted::{self, Found};
 use super::unwired::DanglingNames;
 use super::uri::{Uri, spread};
@@ -18,6 +19,8 @@ use crate::source::Text;
 pub(crate) struct Promoted<'f> {
     /// By composites that run by themselves, with the targets that these give them: nothing else around them can.
     pub(crate) outermost: HashMap<ReferenceId<'f>, Vec<&'f Text>>,
+    /// The services of the web to which these lead.
+    pub(crate) outermost_web: HashMap<ReferenceId<'f>, Vec<WebEnd<'f>>>,
     /// By composites that implement components: to these references of theirs.
     pub(crate) to: HashMap<ReferenceId<'f>, Vec<ReferenceId<'f>>>,
     /// Those that one composite's reference promotes together although their interfaces differ, which is reported.
@@ -108,6 +111,7 @@ impl<'f> Promoted<'f> {
             unwired(reference, report);
         }
         for inner in found {
+            self.outermost_web.entry(inner).or_default().extend(WebEnd::of(reference));
             self.outermost.entry(inner).or_default().extend(&reference.targets);
         }
     }

@@ -18,7 +18,10 @@ fn where_alerts_go_and_what_a_lost_terminal_leads_to_are_read() {
     let (composite, diagnostics) = loaded(&text);
     assert_eq!(diagnostics, "");
     let run = composite.unwrap().run;
-    assert_eq!(run.alert_url.as_ref().unwrap().value, HttpAddress::parse("http://a:1/b").unwrap());
+    assert_eq!(
+        run.alert_url.as_ref().unwrap().value,
+        HttpAddress::parse("http://a:1/b", &crate::model::AddressHelp::ALERTS).unwrap()
+    );
     assert_eq!(run.token(), Some("TOKEN"));
     assert_eq!(run.alert_command.as_ref().unwrap(), &"./page.sh \"a  b\"");
     assert_eq!(run.hangup.unwrap().value, Hangup::GoOn);

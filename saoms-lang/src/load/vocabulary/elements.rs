@@ -172,6 +172,14 @@ kinds! {
         REQUIRES; POLICY_SETS;
     } ["operation", "wireFormat.", "operationSelector.", "requires", "policySetAttachment", "documentation",
         "extensions"]
+
+    /// The binding to the web.
+    pub BINDING_REST = "binding.rest": "Calls over HTTP with JSON: the control server of the run offers the service, or the reference leads to an HTTP server." {
+        known "name" Name: "The name of the binding.";
+        known "uri" Uri: "Of a service, its path on the server, such as `/stock`; the default is `/services/COMPONENT/SERVICE`. Of a reference, the address of the service, such as `http://host:8080/stock`.";
+        REQUIRES; POLICY_SETS;
+    } ["operation", "wireFormat.", "operationSelector.", "requires", "policySetAttachment", "documentation",
+        "extensions"]
 }
 
 // Elements that name intents, policy sets and operations (SCA Policy 1.1, 4.2 and 4.3; SCA 1.0 for operations).
@@ -197,10 +205,11 @@ kinds! {
 
 /// The elements of composites whose parts are known. Of two of one name, the first is that of a composite, the other
 /// that of a component.
-pub(super) const KINDS: [&Kind; 18] = [
+pub(super) const KINDS: [&Kind; 19] = [
     &COMPOSITE, &COMPONENT, &INCLUDE, &WIRE, &COMPOSITE_PROPERTY, &COMPOSITE_SERVICE, &COMPOSITE_REFERENCE,
     &COMPONENT_PROPERTY, &COMPONENT_SERVICE, &COMPONENT_REFERENCE, &CALLBACK, &IMPLEMENTATION_JAVA,
     &IMPLEMENTATION_COMPOSITE, &IMPLEMENTATION_RUST, &INTERFACE_JAVA, &INTERFACE_RUST, &INTERFACE_WSDL, &BINDING_SCA,
+    &BINDING_REST,
 ];
 
 /// Those that the model does not keep.
@@ -245,12 +254,13 @@ attributes! {
     ALERT_COMMAND = known "alertCommand" Text: "The command of the shell that is run for each change of an alert, in the folder of the composite; it reads the change as JSON. `saoms run` runs it with `--alerts` alone.";
     HANGUP = known "hangup" Hangup: "What a lost terminal (SIGHUP) leads to: `end`, the default, ends the run; `hold` stops all that moves until it is released, as `saoms estop` does; `goOn` changes nothing. SIGTERM always ends the run.";
     LOST_LINK = known "lostLink" Hangup: "What a lost link to the other programs of a network leads to: `goOn`, the default, changes nothing; `hold` stops all that moves in this program until it is released, as `saoms estop` does; `end` ends the run.";
-    DEADLINE = known "deadline" Duration: "The time within which a call of a component of another node has to be answered, such as `10s` or `500ms`; the default is 3 s. The call fails if it is not. A number without a unit is milliseconds.";
+    DEADLINE = known "deadline" Duration: "The time within which a call has to be answered, such as `10s` or `500ms`; the default is 3 s. The call fails if it is not. Of a reference, calls of components of other nodes and of web servers have a deadline; of a service, calls from the web. A number without a unit is milliseconds.";
+    TOKEN_ENV = known "tokenEnv" Variable: "The environment variable with the token for the web server of the reference (`binding.rest`), which is sent as `Authorization: Bearer ...`. The token itself is in no composite.";
     DEFAULT_NODE = known "defaultNode" Text: "The node of the components that are in no other one (`saoms:node`).";
 }
 
 /// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that
-/// of a composite, `component/reference` that of a component.
+/// of a composite, `component/reference` that of a component, `reference` that of a composite, and `service` both.
 pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("composite", ALERT_URL),
     ("composite", ALERT_TOKEN_ENV),
@@ -269,10 +279,13 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("wire", IF),
     ("composite/property", ENV),
     ("component/reference", DEADLINE),
+    ("component/reference", TOKEN_ENV),
+    ("reference", TOKEN_ENV),
+    ("service", DEADLINE),
 ];
 
 /// The elements that SAOMS adds in its own namespace.
-pub const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "loop", "severity"];
+pub const OWN_ELEMENTS: &[&str] = &["binding.rest", "implementation.rust", "interface.rust", "loop", "severity"];
 
 /// The elements of SCA that a `severity` stands in.
 pub const SEVERITY_PARENTS: &[&str] = &["composite", "component", "service", "reference", "wire", "include"];
@@ -281,7 +294,7 @@ pub const SEVERITY_PARENTS: &[&str] = &["composite", "component", "service", "re
 pub(in crate::load) fn own_parents(name: &str) -> &'static [&'static str] {
     match name {
         "severity" => SEVERITY_PARENTS,
-        "interface.rust" => &["service", "reference"],
+        "binding.rest" | "interface.rust" => &["service", "reference"],
         _ => &["component"],
     }
 }

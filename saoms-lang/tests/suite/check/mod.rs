@@ -20,5 +20,6 @@ mod support;
 mod tasks;
 mod unfolding;
 mod values;
+mod web;
 mod wiring;
 mod written;

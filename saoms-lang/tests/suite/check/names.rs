@@ -63,7 +63,7 @@ fn services_and_references_are_those_of_the_class() {
           4:16-20 the first
           help: keep one of them
         6:94-104 warning S2009: `binding.ws` is not supported: the service can be called only inside this program
-          help: remove it; to reach other machines, use topics and the `url` of a message broker
+          help: remove it; to reach other machines, use `binding.rest`, or topics and the `url` of a message broker
         7:18-21 error S2006: class `example.Robot001` has no reference `GPS`
           fix: replace `GPS` with `gps` [7:18-21 "gps"]
         8:37-41 error S2008: the multiplicity `0..n` of `gps` is wider than `0..1` in class `example.Robot001`

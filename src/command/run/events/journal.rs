@@ -24,7 +24,7 @@ pub(super) fn event(line: &str) -> Result<Option<String>, String> {
     let (Some(component), Some(text)) = (record["component"].as_str(), record["text"].as_str()) else {
         return Ok(None);
     };
-    if !is_from_outside(component) {
+    if !is_from_outside(component, record["record"].as_str()) {
         return Ok(None);
     }
     let seconds = record["time_s"].as_f64().filter(|time| *time >= 0.0);
@@ -51,6 +51,9 @@ mod tests {
         assert_eq!(line("(outside)", "North: landing 3").unwrap(), "North: at 3000000001ns landing 3");
         assert_eq!(line("(outside)", "set A text=a: b").unwrap(), "at 3000000001ns set A text=a: b");
         assert_eq!(line("Robot7", "luggage (1,2) to (3,4)"), None);
+        let change =
+            r#"{"time_s": 1.0, "component": "(outside)", "record": "fleet_changed", "text": "change: 1 added (A)"}"#;
+        assert_eq!(event(change), Ok(None), "a change of the fleet does not happen again");
         assert_eq!(event("{\"end\":{\"records\":3}}"), Ok(None));
         assert!(event("{\"id\":").is_err());
         assert!(is_head(b"{\"clock\":\"virtual\",\"journal\":1}\n{}") && !is_head(b"{\n  \"seed\": 1"));

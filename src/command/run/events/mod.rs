@@ -88,7 +88,11 @@ impl Events {
                 Ok(true) if self.number as u64 <= taken => {}
                 Ok(true) => {
                     wait_for_space(handle);
-                    let _together = handle.together();
+                    let together = handle.together();
+                    if cursor.is_some() && together.is_too_late() {
+                        // The next program takes it.
+                        return;
+                    }
                     self.take(&line, handle);
                     if let Some(cursor) = &cursor {
                         handle.set_counter(cursor, self.number as u64);

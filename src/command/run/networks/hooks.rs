@@ -53,6 +53,10 @@ impl NetworkHooks for Hooks {
         }
     }
 
+    fn is_interrupted(&self) -> bool {
+        self.ending.has_come()
+    }
+
     fn control(&self, request: ControlRequest, reply: Reply) {
         match self.door.0.get() {
             Some(Some(door)) => door.serve(request, reply),

@@ -8,7 +8,7 @@ use saoms_api::Secret;
 use saoms_api::extension::{Access, FailureNotice, Router, RouterClass, TlsPaths};
 use saoms_core::network::key;
 use saoms_core::network::rights::Grant;
-use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport, peers};
+use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport, TransportError, peers};
 use saoms_lang::assembly::{Assembly, ComponentSpec, RemoteTarget, TaskProperties};
 use saoms_lang::diagnostic::{Diagnostic, codes};
 
@@ -133,6 +133,19 @@ impl Resolver<'_> {
             };
             self.fault(component, property, &fault.text);
         }
+    }
+
+    /// Notes that there is no transport for the url of a network.
+    pub(super) fn no_transport(&mut self, url: &str, described: &Described, error: &TransportError) {
+        let (component, property) = match &described.router {
+            Some((index, _)) => (*index, if self.has(*index, "transport") { "transport" } else { "IP" }),
+            None => (described.first, "url"),
+        };
+        let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(component) else { return };
+        let Some(place) = self.assembly.networks.get(path, property) else { return };
+        let message = format!("component `{path}` is on the network `{url}`, but {error}");
+        let one = Diagnostic::new(&codes::NO_TRANSPORT, place, message);
+        self.faults.push(one.help("docs/networks.md says where the libraries of transports are looked for"));
     }
 
     /// Notes that the url of a network without a router does not name this program, but these.

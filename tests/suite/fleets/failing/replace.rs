@@ -31,7 +31,7 @@ fn robots_go_on_in_their_successors_in_the_middle_of_their_jobs_and_no_luggage_i
         for step in 1..40_u64 {
             fleet.run_until(Time::from_nanos(step * 7_300_000_000));
             for robot in &robots {
-                match fleet.handle().replace(robot.clone()) {
+                match fleet.handle().replace(robot.clone(), None) {
                     Ok(done) => {
                         assert_eq!(done, Takeover::Continued);
                         replaced += 1;

@@ -23,6 +23,11 @@ fn robots_with_luggage_for_each_others_end_of_a_corridor_are_named_soon() {
         .run(1, Duration::from_secs(30));
     let log = run.log_of("Zone1").join("\n");
     assert!(log.contains("are in each other's way, and cannot get past"), "{log}\n{}", run.log());
+    // Luggage comes at 1 s, and they meet in 8 periods; a deadlock is named within 50.
+    let all = run.log();
+    let named = all.lines().find(|line| line.contains("are in each other's way")).unwrap();
+    let time: f64 = named.strip_prefix('[').and_then(|line| line.split_once(" s]")).unwrap().0.trim().parse().unwrap();
+    assert!(time <= 1.0 + 0.8 + 5.0, "{all}");
 }
 
 #[test]

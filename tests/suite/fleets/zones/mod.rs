@@ -3,6 +3,7 @@
 mod apart;
 mod border;
 mod corridor;
+mod drawn;
 mod entering;
 mod gone;
 mod out_of_reach;

@@ -60,6 +60,8 @@ impl Run {
         fs::write(&composite, FLEET).unwrap();
         let mut child = command(&["run", "--reload", "--for", "60s", "--report"])
             .arg(folder.path().join("report.json"))
+            .arg("--journal")
+            .arg(folder.path().join("run.ndjson"))
             .arg(composite)
             .arg("--plugin")
             .arg(folder.path())
@@ -96,6 +98,13 @@ impl Run {
         self.seen.extend(self.lines.by_ref().map(Result::unwrap));
         let code = self.child.wait().unwrap().code();
         let report = fs::read(self.folder.path().join("report.json")).unwrap();
+        let journal = fs::read_to_string(self.folder.path().join("run.ndjson")).unwrap();
+        let records = journal.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+        let changes: Vec<Value> = records.filter(|record| record["record"] == "fleet_changed").collect();
+        // Each says who wants it.
+        assert!(changes.iter().all(|change| change["values"]["by"] == "reload"), "{changes:?}");
+        let are_replaced = self.seen.iter().any(|line| line.contains("its components are replaced"));
+        assert_eq!(!changes.is_empty(), are_replaced, "{journal}");
         (self.seen, serde_json::from_slice(&report).unwrap(), code)
     }
 }
@@ -115,7 +124,7 @@ fn a_new_build_goes_on_where_the_earlier_one_was() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.build(&["-DBUILD=2", "-DDOC=\"Counts on.\""]);
     run.wait_for(&of_library(&run, "is replaced later: it has not counted to 100 yet"));
-    run.wait_for("is replaced by its new build, and continues with the earlier state");
+    run.wait_for("is replaced, and continues with the earlier state");
     let first = counted(&run.wait_for("build 2 counts"));
     run.build(&["-DBUILD=3"]);
     let later = counted(&run.wait_for("build 3 counts"));
@@ -135,7 +144,8 @@ fn a_build_that_hangs_leaves_the_earlier_one_running() {
     let mut run = Run::start(&["-DBUILD=1", "-DHANGS_AT_END"]);
     run.wait_for("build 1 counts 100");
     run.build(&["-DBUILD=2", "-DHANGS"]);
-    let told = "is not replaced, the earlier one continues: `initialize` or `restore` has not returned within 2s";
+    let told = "is not replaced, the earlier one continues: `initialize` or `restore` has not returned within 2s, \
+                and its thread is left behind";
     run.wait_for(&of_library(&run, told));
     let before = counted(&run.wait_for("build 1 counts"));
     assert!(counted(&run.wait_for("build 1 counts")) > before);
@@ -209,7 +219,7 @@ fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     run.build(&["-DBUILD=4", "-DFORGETS"]);
     run.wait_for("build 4 counts");
     run.build(&["-DBUILD=5"]);
-    run.wait_for("is replaced by its new build, and starts without the earlier state");
+    run.wait_for("is replaced, and starts without the earlier state");
     assert!(counted(&run.wait_for("build 5 counts")) <= 2);
     let (_, report, _) = run.end();
     assert_eq!(report["components"][0]["replaced"], 2);

@@ -51,7 +51,9 @@ pub(super) fn look_at_assignment(knowledge: &mut RobotKnowledge) -> Option<(Safe
 
 /// Whether the battery lasts for assigned luggage. The master knows who is free, and asks again later.
 pub(super) fn decide_about_assigned(job: Job, knowledge: &mut RobotKnowledge) -> SafeLuggageDecision {
-    knowledge.keep_usual_reserve();
+    if knowledge.job.is_none() {
+        knowledge.keep_usual_reserve();
+    }
     match knowledge.means(&job) {
         Feasibility::Enough => SafeLuggageDecision::Take(job),
         Feasibility::Needs(needs) => {

@@ -349,6 +349,10 @@ fn leave(job: Job, carries: bool, why: Hindrance) -> SafeLuggageDecision {
 /// The next request that is out of this robot's reach, while it takes no jobs: others may have to know that no robot
 /// can bring it.
 fn judge(knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
+    if knowledge.energy.borrows {
+        // What is out of reach from here may be within reach of its own charger.
+        return None;
+    }
     let requests = knowledge.lists.requests.open_mut();
     let place = requests.iter().position(|request| !request.judged && request.is_known())?;
     requests[place].judged = true;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::host::cdr;
 
+use super::super::enter::introduce;
 use super::Member;
 use crate::network::control::Answer;
 use crate::network::exchange::{Action, Destination, Keys, News};
@@ -45,7 +46,15 @@ impl<F: Fleet> Member<F> {
                     if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
                         self.fleet.misses(name);
                     }
+                    if let News::Joined { program, .. } | News::GoesOn { program, .. } = &news
+                        && let Some(session) = &self.session
+                    {
+                        introduce(session, self.exchange.settings(), *program);
+                    }
                     let (level, text) = told(&news);
+                    if news.lost() > 0 {
+                        self.fleet.count_lost(news.lost(), &text);
+                    }
                     match &news {
                         News::Unreachable { name, .. } => self.fleet.alert(UNREACHABLE, name, Some(text)),
                         News::Back { name, .. } | News::GoesOn { name, .. } | News::Left { name, .. } => {

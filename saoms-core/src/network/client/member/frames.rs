@@ -3,7 +3,8 @@
 use saoms_api::Level;
 use saoms_api::host::{cdr, shown};
 
-use super::super::{ACCESS, ALIVE, ASK, CALL, CONTROL, COVERED, FIRST_OF_TOPICS, LOOK, REPLY};
+use super::super::enter::answer;
+use super::super::{ACCESS, ALIVE, ASK, BEGINS, CALL, CONTROL, COVERED, FIRST_OF_TOPICS, LOOK, REPLY, RUNS};
 use super::Member;
 use crate::network::Fleet;
 use crate::network::control::{Ask, Asked};
@@ -47,6 +48,19 @@ impl<F: Fleet> Member<F> {
             ALIVE => {
                 if let Ok(alive) = cdr::decode(&frame.message) {
                     self.exchange.hear(&alive, now);
+                }
+            }
+            BEGINS => {
+                if let Ok(begins) = cdr::decode(&frame.message) {
+                    if let Some(session) = &self.session {
+                        answer(session, self.exchange.settings(), &begins);
+                    }
+                    self.exchange.note_begin(begins);
+                }
+            }
+            RUNS => {
+                if let Ok(begins) = cdr::decode(&frame.message) {
+                    self.exchange.note_begin(begins);
                 }
             }
             ASK => {

@@ -171,7 +171,8 @@ impl Exchange {
 
     /// True if calls were put that a program which is there has not answered.
     pub fn awaits_answers(&self) -> bool {
-        let is_awaited = |program| self.peers.get(&program).is_some_and(|peer| peer.is_awaited(self.now));
+        let is_awaited =
+            |program| self.peers.get(&program).is_some_and(|peer| peer.is_awaited(self.now, self.settings.linger));
         let first = self.lines.values().filter_map(|line| line.waiting.front());
         first.filter_map(|first| first.program).any(is_awaited)
     }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::super::wire::{Alive, Vote};
-use super::super::{Exchange, Settings};
+use super::super::wire::{Alive, Begins, Reads, Vote};
+use super::super::{Action, Exchange, OwnMessage, Settings};
 use super::lossy::MILLISECOND;
 
 fn program(others: &[&str]) -> Exchange {
@@ -12,6 +12,7 @@ fn program(others: &[&str]) -> Exchange {
         name: "own".to_owned(),
         patience: 1_000 * MILLISECOND,
         limit: 1 << 20,
+        linger: 10_000 * MILLISECOND,
         components: BTreeSet::new(),
         others: others.iter().map(|name| (*name).to_owned()).collect(),
         memory: None,
@@ -74,4 +75,59 @@ fn a_program_that_said_that_all_is_done_and_vanished_has_said_so() {
     assert!(own.is_done(), "its last sign of life was lost");
     own.hear(&alive(3, "other", Vote::Open), 10_000 * MILLISECOND);
     assert!(!own.is_done());
+}
+
+/// Another program that reads a topic on which this one has sent something that it has not received.
+fn lacking(own: &mut Exchange, program: u64, name: &str) {
+    let reads = vec![Reads { topic: "EVENTS".to_owned() }];
+    own.hear(&Alive { reads, ..alive(program, name, Vote::Silent) }, MILLISECOND);
+    let (topic, component) = ("EVENTS".into(), "C".into());
+    own.send(OwnMessage {
+        topic: &topic,
+        is_state: false,
+        component: &component,
+        to: None,
+        key: None,
+        sent: 0,
+        schema: 0,
+        cause: 0,
+        place: None,
+        number: None,
+        bytes: b"1",
+    });
+}
+
+fn lost(own: &mut Exchange) -> u64 {
+    own.leave();
+    let news = own.take_actions().into_iter().filter_map(|action| match action {
+        Action::Tell(news) => Some(news.lost()),
+        _ => None,
+    });
+    news.sum()
+}
+
+#[test]
+fn readers_that_are_away_are_waited_for_and_then_have_lost_what_they_lack() {
+    let mut own = program(&[]);
+    lacking(&mut own, 2, "reader");
+    own.tick(9_000 * MILLISECOND);
+    assert!(!own.is_complete(), "it was missed, and is waited for");
+    assert_eq!(own.awaited(), [("reader".into(), 1, false)]);
+    own.tick(11_000 * MILLISECOND);
+    assert!(own.is_complete() && own.awaited().is_empty());
+    assert_eq!(lost(&mut own), 1);
+}
+
+#[test]
+fn nobody_waits_for_a_program_whose_components_have_begun_in_another_one() {
+    let mut own = program(&[]);
+    let begins = |program: u64| Begins { program, components: vec!["Robot1".to_owned()], ..Begins::default() };
+    own.note_begin(begins(2));
+    lacking(&mut own, 2, "reader");
+    assert!(!own.is_complete());
+    own.note_begin(begins(3));
+    assert!(!own.is_complete(), "that one may be refused");
+    own.hear(&alive(3, "reader", Vote::Silent), 500 * MILLISECOND);
+    assert!(own.is_complete());
+    assert_eq!(lost(&mut own), 0);
 }

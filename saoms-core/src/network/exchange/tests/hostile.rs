@@ -127,6 +127,7 @@ proptest! {
             name: "own".to_owned(),
             patience: 1_000 * MILLISECOND,
             limit: 8 << 10,
+            linger: 10_000 * MILLISECOND,
             components: BTreeSet::from(["Own".to_owned()]),
             others: BTreeSet::new(),
             memory: None,

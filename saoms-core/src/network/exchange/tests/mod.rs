@@ -255,6 +255,7 @@ fn programs_that_died_make_room_for_new_ones() {
         name: "own".to_owned(),
         patience: 1_000 * MILLISECOND,
         limit: 8 << 10,
+        linger: 10_000 * MILLISECOND,
         components: BTreeSet::new(),
         others: BTreeSet::new(),
         memory: None,

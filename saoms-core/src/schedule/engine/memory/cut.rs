@@ -1,6 +1,7 @@
 //! The making of a cut: what is looked at while the engine is locked, and what the thread of the store makes of it.
 
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::mem;
 use std::sync::{Arc, PoisonError};
@@ -9,15 +10,15 @@ use saoms_api::host::{SharedMessage, TopicKind, cdr};
 use saoms_api::{Message, Saved};
 
 use super::forms::{
-    COMPONENT, COUNTERS, ComponentForm, EVENTS, EventsForm, HeldForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
-    NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, SavedForm,
-    StateForm, TEXTS, UnreadForm, WAITING,
+    COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, HeldForm, INPUTS, InputsForm, KNOWN, MessageForm,
+    NAMES, NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, StateForm,
+    TEXTS, UnreadForm, WAITING,
 };
 use super::{CUT, Ending, Engine, NEVER, SharedText, Writing};
 use crate::bus::TopicId;
 use crate::hash::{fold, text_hash};
 use crate::report::{PartOfReport, Sections};
-use crate::schedule::engine::slot::SlotState;
+use crate::schedule::engine::slot::{PendingRequest, SlotState};
 use crate::schedule::inject::OUTSIDE;
 use crate::store::{Batch, Change, Contents, LaterChanges};
 
@@ -44,6 +45,8 @@ pub(super) struct Cut {
 struct ComponentCut {
     saved: Option<Arc<Saved>>,
     form: ComponentForm,
+    /// The time of its first execution, while that is to come.
+    delayed: Option<u64>,
 }
 
 /// A message with the paths of the components that its header names by numbers.
@@ -77,8 +80,16 @@ impl Engine {
         self.memory.with_inbox = with_inbox;
         let held = self.held(&mut messages);
         let components = mem::take(&mut self.memory.differing);
-        let components = components.into_iter().map(|index| self.component_cut(index)).collect();
-        let inputs = self.memory.last_inputs.take().unwrap_or_else(|| self.waiting_inputs());
+        let components = components.into_iter().map(|index| self.component_cut(index, now)).collect();
+        let inputs = match self.memory.last_inputs.take() {
+            Some(mut inputs) => {
+                // What belongs together came in part before the end began, and in part after that.
+                inputs.inputs.extend(self.injected_inputs());
+                self.injections.clear();
+                inputs
+            }
+            None => self.waiting_inputs(),
+        };
         let end = self.cause.map(|cause| format!("{cause:?}")).unwrap_or_default();
         let records = self.record_ids.load(std::sync::atomic::Ordering::Relaxed);
         let counters = self.memory.counters.iter().map(|(name, counter)| (name.clone(), counter.value()));
@@ -96,24 +107,26 @@ impl Engine {
             unread,
             held,
             inputs,
-            report: sections.take_changed(),
+            report: sections.take_changed(|component, code| {
+                let slot = self.slots.get(component as usize);
+                slot.is_some_and(|slot| slot.body.is_none() && slot.memory.code == code)
+            }),
         };
         let memory = &mut self.memory;
         memory.made += 1;
         let changes = mem::take(&mut memory.changes);
         queue.put_announced(Batch { index: CUT, number: memory.made, changes, later: Some(Box::new(cut)) });
         memory.announced = 0;
-        let (components, outgoing) = (mem::take(&mut memory.waiting), mem::take(&mut memory.outgoing));
-        memory.writing.push_back(Writing { cut: memory.made, batch: self.batches, components, outgoing });
+        let (batches, outgoing) = (mem::take(&mut memory.waiting), mem::take(&mut memory.outgoing));
+        memory.writing.push_back(Writing { cut: memory.made, batch: self.batches, batches, outgoing });
         (memory.wanted_since, memory.differs_since, memory.due_at_last) = (NEVER, NEVER, NEVER);
         if memory.ending == Ending::Due {
             memory.ending = Ending::Made;
         }
     }
 
-    /// What is kept of a component; `None` if it is not part of the fleet any more.
-    fn component_cut(&mut self, index: u32) -> (Arc<str>, Option<ComponentCut>) {
-        let is_to_run = self.is_to_run(index);
+    /// What is kept of a component at this time; `None` if it is not part of the fleet any more.
+    fn component_cut(&mut self, index: u32, now: u64) -> (Arc<str>, Option<ComponentCut>) {
         let slot = &mut self.slots[index as usize];
         slot.memory.differs = false;
         let name = Arc::clone(&slot.name);
@@ -121,10 +134,20 @@ impl Engine {
             return (name, None);
         }
         let period = slot.policy.period;
+        // One that is to leave leaves in the next program: it may have something to say before.
+        let has_to_leave = slot.policy.periodic && slot.has_to_leave();
         let form = ComponentForm {
             class: slot.spec.class.name().to_owned(),
-            is_scheduled: is_to_run || !slot.policy.periodic || slot.state == SlotState::Failed,
-            until: slot.until,
+            is_scheduled: slot.is_scheduled()
+                || has_to_leave
+                || !slot.policy.periodic
+                || matches!(slot.state, SlotState::Failed | SlotState::Leaving | SlotState::Abandoned),
+            until: match slot.pending {
+                _ if has_to_leave => slot.until.min(now),
+                // It is to run again once it has left.
+                PendingRequest::Return { lasting } => now.saturating_add(lasting),
+                PendingRequest::None | PendingRequest::Leave => slot.until,
+            },
             period,
             phase: if period > 0 && slot.due != NEVER { slot.due % period } else { 0 },
             is_stopped: slot.is_stopped(),
@@ -135,7 +158,7 @@ impl Engine {
             set: slot.memory.set.clone(),
             alerts: slot.memory.alerts.clone(),
         };
-        (name, Some(ComponentCut { saved: slot.memory.saved.clone(), form }))
+        (name, Some(ComponentCut { saved: slot.memory.saved.clone(), form, delayed: slot.delayed_until() }))
     }
 
     /// What was received of other programs since the last cut.
@@ -285,81 +308,90 @@ impl Sent {
 struct Differences<'a> {
     changes: &'a mut Vec<Change>,
     known: &'a Contents,
+    /// The types that were put; and their hashes, by the places of their texts in memory.
+    schemas: HashSet<u64>,
+    hashes: HashMap<(usize, usize), u64>,
 }
 
 impl Differences<'_> {
-    fn put(&mut self, entry: String, key: u64, bytes: Option<&[u8]>) {
-        let known = self.known.of(&entry).and_then(|entries| entries.get(&key));
+    fn put(&mut self, entry: &str, key: u64, bytes: Option<&[u8]>) {
+        let known = self.known.of(entry).and_then(|entries| entries.get(&key));
         if known.map(|bytes| &**bytes) != bytes {
             self.changes.push(Change { component: entry.into(), key, bytes: bytes.map(Arc::from) });
         }
     }
 
-    fn put_form(&mut self, entry: String, key: u64, form: &impl Message) {
+    fn put_form(&mut self, entry: &str, key: u64, form: &impl Message) {
         self.put(entry, key, Some(&cdr::encode(form)));
     }
 }
 
 impl LaterChanges for Cut {
     fn add_to(&self, changes: &mut Vec<Change>, known: &Contents) {
-        let mut differences = Differences { changes, known };
-        differences.put_form(RUN.to_owned(), 0, &self.run);
+        let mut differences = Differences { changes, known, schemas: HashSet::new(), hashes: HashMap::new() };
+        differences.put_form(RUN, 0, &self.run);
         for (name, component) in &self.components {
-            let entry = || format!("{COMPONENT}{name}");
-            let Some(ComponentCut { saved, form }) = component else {
-                differences.put(entry(), SAVED, None);
-                differences.put(entry(), KNOWN, None);
+            let entry = format!("{COMPONENT}{name}");
+            let Some(ComponentCut { saved, form, delayed }) = component else {
+                [SAVED, KNOWN, DELAYED].into_iter().for_each(|key| differences.put(&entry, key, None));
                 continue;
             };
-            differences.put_form(entry(), KNOWN, form);
+            differences.put_form(&entry, KNOWN, form);
+            let delayed = delayed.map(u64::to_le_bytes);
+            differences.put(&entry, DELAYED, delayed.as_ref().map(|bytes| &bytes[..]));
             match saved.as_ref().filter(|saved| !saved.is_nothing()) {
-                Some(saved) => differences.put_saved(entry(), saved),
-                None => differences.put(entry(), SAVED, None),
+                Some(saved) => differences.put_saved(&entry, saved),
+                None => differences.put(&entry, SAVED, None),
             }
         }
         for (topic, sent) in &self.states {
             let entry = format!("{STATES}{topic}\n{}", sent.sender);
-            differences.put_form(entry, sent.message.key().unwrap_or_default(), &sent.form());
+            differences.put_form(&entry, sent.message.key().unwrap_or_default(), &sent.form());
         }
         let events = EventsForm {
             messages: self.messages.iter().map(Sent::form).collect(),
             unread: self.unread.clone(),
             held: self.held.clone(),
         };
-        differences.put_form(WAITING.to_owned(), EVENTS, &events);
-        differences.put_form(WAITING.to_owned(), INPUTS, &self.inputs);
+        differences.put_form(WAITING, EVENTS, &events);
+        differences.put_form(WAITING, INPUTS, &self.inputs);
         for (path, part) in &self.report {
             let form = PartForm { path: path.clone(), is_count: part.is_count, value: part.value.to_string() };
-            differences.put_form(REPORT.to_owned(), text_hash(path), &form);
+            differences.put_form(REPORT, text_hash(path), &form);
         }
         for (entry, number, name) in &self.names {
-            differences.put((*entry).to_owned(), *number, Some(name.as_bytes()));
+            differences.put(entry, *number, Some(name.as_bytes()));
         }
         for (url, form) in &self.received {
             let key = fold(text_hash(&form.topic), form.origin);
-            differences.put_form(format!("{RECEIVED}{url}"), key, form);
+            differences.put_form(&format!("{RECEIVED}{url}"), key, form);
         }
         for (name, value) in &self.counters {
-            differences.put(format!("{COUNTERS}{name}"), 0, Some(&value.to_le_bytes()));
+            differences.put(&format!("{COUNTERS}{name}"), 0, Some(&value.to_le_bytes()));
         }
         for (name, text) in &self.texts {
-            differences.put(format!("{TEXTS}{name}"), 0, Some(text.as_bytes()).filter(|bytes| !bytes.is_empty()));
+            differences.put(&format!("{TEXTS}{name}"), 0, Some(text.as_bytes()).filter(|bytes| !bytes.is_empty()));
         }
     }
 }
 
 impl Differences<'_> {
     /// Puts what a component saved, and the type of it once for all components.
-    fn put_saved(&mut self, entry: String, saved: &Saved) {
-        let Ok(SavedForm { schema, message }) = cdr::decode(saved.bytes()) else {
+    fn put_saved(&mut self, entry: &str, saved: &Saved) {
+        let Some((schema, message)) = saved.parts() else {
             // It cannot be read by anybody.
             return self.put(entry, SAVED, None);
         };
-        let hash = text_hash(&schema);
-        let is_new = !self.changes.iter().any(|change| &*change.component == SCHEMAS && change.key == hash);
-        if is_new {
-            self.put(SCHEMAS.to_owned(), hash, Some(schema.as_bytes()));
+        let hash = match &schema {
+            // The text is long, and stays where it is.
+            Cow::Borrowed(text) => {
+                *self.hashes.entry((text.as_ptr().addr(), text.len())).or_insert_with(|| text_hash(text))
+            }
+            Cow::Owned(text) => text_hash(text),
+        };
+        if self.schemas.insert(hash) {
+            self.put(SCHEMAS, hash, Some(schema.as_bytes()));
         }
-        self.put_form(entry, SAVED, &StateForm { schema: hash, message });
+        self.put_form(entry, SAVED, &StateForm { schema: hash, message: message.into_owned() });
     }
 }

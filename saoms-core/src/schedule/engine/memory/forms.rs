@@ -5,10 +5,12 @@ use saoms_api::Message;
 
 /// The run: one entry.
 pub(super) const RUN: &str = "(run)\n";
-/// A component, by its path: what it saved, and what the engine knows of it.
+/// A component, by its path: what it saved, what the engine knows of it, and the time of its first execution as long as
+/// that is to come.
 pub(super) const COMPONENT: &str = "(component)\n";
 pub(super) const SAVED: u64 = 0;
 pub(super) const KNOWN: u64 = 1;
+pub(super) const DELAYED: u64 = 2;
 /// The types of what components saved, by their hashes.
 pub(super) const SCHEMAS: &str = "(schemas)\n";
 /// What a state topic retains of a publisher, by the topic and the path of the publisher; the keys are those of the

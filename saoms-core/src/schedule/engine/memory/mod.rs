@@ -9,6 +9,7 @@
 
 mod cut;
 mod forms;
+mod outgoing;
 mod recall;
 mod waiting;
 
@@ -20,15 +21,17 @@ use saoms_api::Saved;
 use saoms_api::host::SharedMessage;
 
 pub(in crate::schedule) use self::forms::{AlertForm, InputForm, InputMessage, InputsForm, SetForm, is_of_memory};
+pub(super) use self::outgoing::MUCH;
+use self::outgoing::Outgoing;
 use self::recall::Recalled;
 pub(in crate::schedule) use self::recall::{Recollection, recall_report, value_hash};
 use self::waiting::CodeInCalls;
-use super::slot::{NEVER, SlotState};
+use super::slot::NEVER;
 use super::{Engine, Next, RunPhase};
 use crate::bus::TopicId;
 use crate::network::FromRun;
-use crate::schedule::component::body::Part;
-use crate::store::{Batch, Change, StoreQueue};
+use crate::schedule::component::part::Part;
+use crate::store::{Change, StoreQueue};
 
 /// Time between two cuts on which nothing waits: the most of what simulated components did that is done again.
 const BETWEEN_CUTS: u64 = 500_000_000;
@@ -51,8 +54,11 @@ pub(crate) struct Memory {
     /// Number of cuts that were made, and of those that are committed.
     made: u64,
     committed: u64,
-    /// Number of those who must not see a cut before they have finished.
+    /// Number of those who must not see a cut before they have finished; for how long the last cut waits for them, and
+    /// until when.
     guards: usize,
+    patience: u64,
+    guarded_until: Option<u64>,
     /// How the next cut waits for code that runs on other threads.
     code: CodeInCalls,
     /// Components with events that they were given and have not handled.
@@ -61,12 +67,14 @@ pub(crate) struct Memory {
     /// Components that differ from the last cut, and those that have to save before the next one.
     differing: Vec<u32>,
     touched: Vec<u32>,
-    /// Changes for the next cut, with their bytes in the queue, and the components whose messages wait for them.
+    /// Changes for the next cut, with their bytes in the queue, and the batches of components that they are.
     changes: Vec<Change>,
     announced: usize,
-    waiting: Vec<u32>,
+    waiting: Vec<(u32, u64)>,
     /// What leaves the program once the next cut is committed.
-    outgoing: Vec<(u8, FromRun)>,
+    outgoing: Outgoing,
+    /// Number of bytes of the messages of components that wait for commits, roughly.
+    held_back: usize,
     /// The cuts that are written: one, and at the end of the run the last one.
     writing: VecDeque<Writing>,
     /// What waits from outside when the run ends.
@@ -112,11 +120,11 @@ impl Counter {
 #[derive(Debug)]
 struct Writing {
     cut: u64,
-    /// The number of the last batch in it, and the components that have some.
+    /// The number of the last batch in it; and the components of all, each with a batch, in the order of these.
     batch: u64,
-    components: Vec<u32>,
+    batches: Vec<(u32, u64)>,
     /// What leaves the program once it is committed.
-    outgoing: Vec<(u8, FromRun)>,
+    outgoing: Outgoing,
 }
 
 /// The last cut: the end of the run is no part of the memory.
@@ -127,6 +135,8 @@ enum Ending {
     /// The run ends, and the last cut is still to be made.
     Due,
     Made,
+    /// There is none, since what belongs together was not complete in time.
+    CutShort,
 }
 
 /// What the memory knows of a component.
@@ -136,11 +146,15 @@ pub(crate) struct SlotMemory {
     saved: Option<Arc<Saved>>,
     differs: bool,
     is_touched: bool,
+    /// Number of times that its code has begun or returned.
+    code: u64,
     /// The events that its code has, while it runs.
     reading: Vec<(TopicId, Vec<SharedMessage>)>,
     /// True if its code has called another component, until it returns; and if cuts have waited for that long enough.
     has_called: bool,
     is_given_up: bool,
+    /// True if it is among the callers that the next cut looks at.
+    is_noted_caller: bool,
     /// The values that operators have set, and the alerts that it has raised.
     pub(crate) set: Vec<SetForm>,
     alerts: Vec<AlertForm>,
@@ -151,8 +165,9 @@ pub(crate) struct SlotMemory {
 }
 
 impl Memory {
-    pub(super) fn new() -> Memory {
-        Memory { due_at_last: NEVER, wanted_since: NEVER, differs_since: NEVER, ..Memory::default() }
+    /// With the time for which the last cut waits for what belongs together.
+    pub(super) fn new(patience: u64) -> Memory {
+        Memory { due_at_last: NEVER, wanted_since: NEVER, differs_since: NEVER, patience, ..Memory::default() }
     }
 
     #[inline]
@@ -170,6 +185,12 @@ impl Memory {
     /// The same, for others.
     pub(super) fn takes_now(&self, phase: RunPhase) -> bool {
         self.takes(phase)
+    }
+
+    /// True if what happens from now on is no part of what the fleet goes on from, so that nothing of it is kept or
+    /// leaves over a network.
+    pub(in crate::schedule) fn is_over(&self, phase: RunPhase) -> bool {
+        self.is_on() && !self.takes(phase)
     }
 
     /// The time from which a cut is due when nothing else is.
@@ -192,9 +213,33 @@ impl Memory {
         self.committed >= cut
     }
 
+    /// True if there was no last cut.
+    pub(crate) fn is_cut_short(&self) -> bool {
+        self.ending == Ending::CutShort
+    }
+
+    /// True if the run ends, and the last cut waits for what belongs together.
+    pub(in crate::schedule) fn is_open(&self) -> bool {
+        self.is_on() && self.ending == Ending::Due && self.guards > 0
+    }
+
     /// True if what happens outside waits for a cut that will come.
     pub(crate) fn has_uncommitted(&self) -> bool {
         self.is_on() && (!self.outgoing.is_empty() || !self.writing.is_empty() || self.ending == Ending::Due)
+    }
+
+    /// Counts what waits for cuts among what waits for the disk.
+    fn note_outgoing(&self) {
+        let written: usize = self.writing.iter().map(|one| one.outgoing.bytes()).sum();
+        if let Some(queue) = &self.queue {
+            queue.note_outgoing(self.outgoing.bytes() + written + self.held_back);
+        }
+    }
+
+    /// Notes that messages of components wait for commits, or do not any more: their bytes before and now.
+    pub(super) fn note_held_back(&mut self, before: usize, now: usize) {
+        self.held_back = self.held_back.saturating_sub(before) + now;
+        self.note_outgoing();
     }
 
     fn schedule(&mut self) {
@@ -248,11 +293,24 @@ impl Engine {
         self.memory.next()
     }
 
-    /// Keeps cuts away until the guard is given back.
-    pub(in crate::schedule) fn guard_cut(&mut self, more: bool) {
-        self.memory.guards = if more { self.memory.guards + 1 } else { self.memory.guards - 1 };
-        self.memory.schedule();
-        self.wake |= self.roles.asleep_until != 0 && !more;
+    /// Keeps cuts away until [`unguard_cut`](Engine::unguard_cut). False if the memory is over, which takes nothing
+    /// more.
+    pub(in crate::schedule) fn guard_cut(&mut self) -> bool {
+        let is_over = self.memory.is_on() && self.memory.ending != Ending::Running;
+        if !is_over {
+            self.memory.guards += 1;
+            self.memory.schedule();
+        }
+        !is_over
+    }
+
+    /// Gives a guard back.
+    pub(in crate::schedule) fn unguard_cut(&mut self) {
+        self.memory.guards -= 1;
+        if self.memory.ending == Ending::Running {
+            self.memory.schedule();
+        }
+        self.wake |= self.roles.asleep_until != 0;
     }
 
     /// Notes that a component differs from the last cut.
@@ -326,18 +384,15 @@ impl Engine {
         }
     }
 
-    /// Hands over to the store what is kept: with the next cut, where there is one.
+    /// Hands over to the store what is kept, with the next cut.
     pub(crate) fn hand_over(&mut self, index: u32, number: u64, changes: Vec<Change>, now: u64) {
-        let Some(queue) = self.memory.queue.clone() else { return };
-        if !self.memory.takes(self.phase) {
-            // What components do in their shutdown is no part of what the fleet goes on from.
-            let changes = if self.memory.ending == Ending::Made { Vec::new() } else { changes };
-            return queue.put(Batch { index, number, changes, later: None });
-        }
+        let Some(queue) = &self.memory.queue else { return };
         self.memory.announced += queue.announce(&changes);
         self.memory.changes.extend(changes);
-        if self.memory.waiting.last() != Some(&index) {
-            self.memory.waiting.push(index);
+        // Events of a topic leave in the order in which they were numbered, whoever sent them.
+        match self.memory.waiting.last_mut() {
+            Some((last, batch)) if *last == index => *batch = number,
+            _ => self.memory.waiting.push((index, number)),
         }
         self.want_cut(now);
     }
@@ -345,9 +400,10 @@ impl Engine {
     /// Leaves something for a network: with a memory, once what it follows from is committed.
     pub(crate) fn leave_for_network(&mut self, network: u8, from_run: FromRun, now: u64) {
         if self.memory.takes(self.phase) {
-            self.memory.outgoing.push((network, from_run));
+            self.memory.outgoing.push(network, from_run);
+            self.memory.note_outgoing();
             self.want_cut(now);
-        } else if self.memory.ending != Ending::Made || !matches!(from_run, FromRun::Message { .. }) {
+        } else if !self.memory.is_over(self.phase) || !matches!(from_run, FromRun::Message { .. }) {
             // Others would act on what is said in a shutdown, and the fleet goes on from before that.
             self.networks.waiting.push((network, from_run));
         }
@@ -375,11 +431,12 @@ impl Engine {
     pub(super) fn commit_cut(&mut self, cut: u64, now: u64) {
         self.memory.committed = cut;
         while let Some(written) = self.memory.writing.pop_front_if(|first| first.cut <= cut) {
-            for index in written.components {
-                self.commit(index, written.batch, now);
+            for (index, batch) in written.batches {
+                self.commit(index, batch, now);
             }
-            self.networks.waiting.extend(written.outgoing);
+            self.networks.waiting.extend(written.outgoing.into_all());
         }
+        self.memory.note_outgoing();
         self.memory.schedule();
         self.has_returned |= self.awaited > 0;
         self.wake |= self.roles.asleep_until != 0;
@@ -390,8 +447,8 @@ impl Engine {
         let written = self.memory.writing.iter().map(|one| one.outgoing.len()).sum::<usize>();
         let unsent = self.memory.outgoing.len() + written;
         self.release_held_back(0);
-        let Memory { committed, made, guards, .. } = self.memory;
-        self.memory = Memory { committed, made, guards, ..Memory::new() };
+        let Memory { committed, made, guards, patience, .. } = self.memory;
+        self.memory = Memory { committed, made, guards, ..Memory::new(patience) };
         self.has_returned |= self.awaited > 0;
         unsent as u64
     }
@@ -415,9 +472,11 @@ impl Engine {
         self.note_differs(index, now);
     }
 
-    /// True if a component is to run again after a start with this memory.
-    fn is_to_run(&self, index: u32) -> bool {
-        let slot = &self.slots[index as usize];
-        slot.is_scheduled() && slot.state != SlotState::Removed
+    /// Notes that a component has executed for the first time: it is not in its delay any more.
+    #[inline]
+    pub(super) fn note_executed(&mut self, index: u32, now: u64) {
+        if std::mem::take(&mut self.slots[index as usize].in_delay) {
+            self.note_differs(index, now);
+        }
     }
 }

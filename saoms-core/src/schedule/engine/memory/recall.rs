@@ -10,7 +10,7 @@ use saoms_lang::assembly::ComponentSpec;
 use serde_json::Value;
 
 use super::forms::{
-    COMPONENT, COUNTERS, ComponentForm, EVENTS, EventsForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
+    COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
     NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, SavedForm,
     StateForm, TEXTS, WAITING,
 };
@@ -46,6 +46,8 @@ pub(crate) struct Recalled {
 struct RecalledComponent {
     form: ComponentForm,
     saved: Option<Arc<Saved>>,
+    /// The time of its first execution, if that is to come.
+    delayed: Option<u64>,
 }
 
 /// What is told of a state that a fleet goes on from.
@@ -95,7 +97,9 @@ impl Recalled {
                     let saved = SavedForm { schema, message: state.message };
                     Some(Arc::new(Saved::from_bytes(cdr::encode(&saved))))
                 });
-                recalled.components.insert(path.to_owned(), RecalledComponent { form: known, saved });
+                let delayed = entries.and_then(|entries| entries.get(&DELAYED)?[..].try_into().ok());
+                let delayed = delayed.map(u64::from_le_bytes);
+                recalled.components.insert(path.to_owned(), RecalledComponent { form: known, saved, delayed });
             } else if let Some(rest) = entry.strip_prefix(STATES) {
                 let topic = rest.split('\n').next().unwrap_or_default();
                 let states = entries.into_iter().flatten().filter_map(|(_, bytes)| cdr::decode(bytes).ok());
@@ -191,6 +195,9 @@ impl Engine {
         let Some(recalled) = &mut self.memory.recalled else { return };
         let slot = &mut self.slots[number as usize];
         let Some(known) = recalled.components.get(&*slot.name) else { return };
+        if known.form.until != NEVER {
+            slot.until = known.form.until;
+        }
         if known.form.class != slot.spec.class.name() {
             slot.memory.begins_anew = true;
             return;
@@ -202,9 +209,6 @@ impl Engine {
             now.is_some()
         };
         slot.memory.set = known.form.set.iter().filter(is_unchanged).cloned().collect();
-        if known.form.until != NEVER {
-            slot.until = known.form.until;
-        }
         match (&known.saved, &mut slot.body) {
             (Some(saved), Some(body)) if slot.spec.class.declaration().saves => {
                 body.part.lasting.recall(Arc::clone(saved));
@@ -280,7 +284,7 @@ impl Engine {
             let readers = body.part.subscriptions.iter().filter(same);
             let reacts: Vec<bool> = readers.map(|reader| self.bus.is_trigger(reader)).collect();
             for reacts in reacts.into_iter().filter(|_| !messages.is_empty()) {
-                body.part.lasting.hear_again(topic, messages.clone(), reacts);
+                body.part.lasting.hear_recalled(topic, messages.clone(), reacts);
             }
             if messages.iter().any(|message| message.to().is_some()) {
                 self.bus.note_addressed(topic);
@@ -304,14 +308,21 @@ impl Engine {
         self.memory.recalled = Some(recalled);
     }
 
-    /// The first due time of a component that goes on: in the phase that it had.
-    pub(in crate::schedule) fn recalled_due(&self, number: u32, now: u64) -> Option<u64> {
+    /// The first due time of a component that goes on: after the rest of its delay, with true, or in the phase that it
+    /// had.
+    pub(in crate::schedule) fn recalled_due(&self, number: u32, now: u64) -> Option<(u64, bool)> {
         let slot: &Slot = &self.slots[number as usize];
-        let form = &self.memory.recalled.as_ref()?.components.get(&*slot.name)?.form;
+        let RecalledComponent { form, delayed, .. } = self.memory.recalled.as_ref()?.components.get(&*slot.name)?;
+        if form.class == slot.spec.class.name()
+            && let Some(delayed) = delayed
+        {
+            // The composite may have a shorter one now.
+            return Some(((*delayed).min(now.saturating_add(slot.policy.delay)).max(now), true));
+        }
         let period = slot.policy.period;
         let is_same = slot.memory.is_recalled && form.period == period && period > 0;
         let due = (now - now % period.max(1)).saturating_add(form.phase);
-        is_same.then(|| if due > now { due } else { due.saturating_add(period) })
+        is_same.then(|| (if due > now { due } else { due.saturating_add(period) }, false))
     }
 
     /// Lets the rest take effect, once all components have joined the fleet.

@@ -6,6 +6,7 @@
 use saoms_api::host::{SharedMessage, TopicKind};
 
 use super::super::{Engine, NEVER, Next, RunPhase};
+use super::{Ending, SlotMemory};
 use crate::bus::TopicId;
 use crate::schedule::component::body::{Body, Job};
 use crate::schedule::os::sys;
@@ -35,11 +36,32 @@ impl CodeInCalls {
     }
 }
 
+impl SlotMemory {
+    /// Numbers code that begins.
+    #[inline]
+    fn begin_code(&mut self) -> u64 {
+        self.code += 1;
+        self.code
+    }
+
+    /// Notes that the code has returned: no code has the present number.
+    #[inline]
+    pub(crate) fn note_end_of_code(&mut self) {
+        self.code += 1;
+    }
+}
+
 impl Engine {
     /// Notes that the code of a component calls another one.
     #[inline]
     pub(crate) fn note_caller(&mut self, index: u32) {
-        if self.memory.is_on() && !std::mem::replace(&mut self.slots[index as usize].memory.has_called, true) {
+        if !self.memory.is_on() {
+            return;
+        }
+        let memory = &mut self.slots[index as usize].memory;
+        memory.has_called = true;
+        // Once, however long there is no cut, as on a full disk.
+        if !std::mem::replace(&mut memory.is_noted_caller, true) {
             self.memory.code.callers.push(index);
         }
     }
@@ -47,9 +69,10 @@ impl Engine {
     /// Notes that the code of a component begins. Events that it was given before count as unread until it returns,
     /// whatever it does.
     #[inline]
-    pub(crate) fn note_code(&mut self, index: u32, body: &Body) {
+    pub(crate) fn note_code(&mut self, index: u32, body: &mut Body) {
         let memory = &mut self.slots[index as usize].memory;
         (memory.has_called, memory.is_given_up) = (false, false);
+        body.part.code = memory.begin_code();
         if !self.memory.with_inbox.is_empty() {
             self.note_given(index, body);
         }
@@ -98,6 +121,7 @@ impl Engine {
                 // It goes on as after a failure, and no further cut waits for it.
                 slot.memory.is_given_up = true;
             }
+            slot.memory.is_noted_caller = false;
             self.memory.code.callers.pop();
         }
         self.memory.code.until = None;
@@ -116,9 +140,45 @@ impl Engine {
         None
     }
 
-    /// The last cut of a run that ends, or what a component has to save before.
-    pub(in super::super) fn next_for_last_cut(&mut self, now: u64) -> Next {
-        self.cut_or_save(now).unwrap_or_else(|| self.wait_for_cut())
+    /// The last cut of a run that ends, or what has to be before; `None` if there is none.
+    pub(in super::super) fn next_for_last_cut(&mut self, now: u64) -> Option<Next> {
+        if self.memory.guards > 0 {
+            let until = now.saturating_add(self.memory.patience);
+            let until = *self.memory.guarded_until.get_or_insert(until);
+            if now < until {
+                return Some(Next::Wait(until));
+            }
+            self.cut_short();
+            return None;
+        }
+        if self.memory.guarded_until.take().is_some() {
+            // Each component has the time of `grace` for its end.
+            self.ended.1 = sys::monotonic();
+        }
+        Some(self.cut_or_save(now).unwrap_or_else(|| self.wait_for_cut()))
+    }
+
+    /// Lets the run end without a last cut: what belongs together would be in it in part. The next program goes on from
+    /// the cut before, and what was kept since then or waited for this one is gone, as after a crash.
+    #[cold]
+    fn cut_short(&mut self) {
+        self.ended.1 = sys::monotonic();
+        self.injections.clear();
+        let memory = &mut self.memory;
+        (memory.ending, memory.last_inputs) = (Ending::CutShort, None);
+        self.unsent += std::mem::take(&mut memory.outgoing).len() as u64;
+        memory.note_outgoing();
+        memory.changes.clear();
+        memory.waiting.clear();
+        let announced = std::mem::take(&mut memory.announced);
+        if let Some(queue) = &memory.queue {
+            queue.withdraw(announced);
+        }
+        // What is in a cut that is being written leaves still.
+        let written = memory.writing.back().map_or(0, |last| last.batch);
+        self.drop_uncommitted(written);
+        self.release_held_back(0);
+        self.has_returned |= self.awaited > 0;
     }
 
     /// Waits until there is use in trying again.

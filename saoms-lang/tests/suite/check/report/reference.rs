@@ -135,6 +135,36 @@ fn example(code: &Code) -> Result<String, String> {
                 .help("docs/security.md says how a network is protected");
             (vec![one], found.sources)
         }
+        "S4031" => {
+            let text = fs::read_to_string(folder().join("S4031.composite")).unwrap();
+            let found = Project::new().in_memory().text("fleet.composite", text).compile(&registry());
+            let place = found.output.unwrap().networks.get("Robot001", "url").unwrap();
+            let message = "component `Robot001` is on the network `mqtt://localhost:1883`, but there is no transport for urls \
+                with `mqtt://`; those that were found serve `host:port`, `tls://`";
+            let one = Diagnostic::new(&codes::NO_TRANSPORT, place, message)
+                .help("docs/networks.md says where the libraries of transports are looked for");
+            (vec![one], found.sources)
+        }
+        "S2072" => {
+            let text = fs::read_to_string(folder().join("S2072.composite")).unwrap();
+            let found = Project::new().in_memory().text("fleet.composite", text).compile(&registry());
+            let place = found.output.unwrap().components[0].web[0].place;
+            let message = "the services that are offered over the web are not served: this run has no control server";
+            let one = Diagnostic::new(&codes::WEB_UNSERVED, place, message);
+            (vec![one.help("serve them: `--serve 127.0.0.1:8080`")], found.sources)
+        }
+        "S2073" => {
+            let text = fs::read_to_string(folder().join("S2073.composite")).unwrap();
+            let found = Project::new().in_memory().text("fleet.composite", text);
+            let found = found.compile(&crate::check::classes::with_surveyor());
+            let place = found.output.unwrap().components[0].references[0].web[0].place;
+            let message = "references lead to the web, to `http://127.0.0.1:8080`: `--allow-web` is missing";
+            let one = Diagnostic::new(&codes::WEB_NOT_ALLOWED, place, message).help(
+                "allow it with `--allow-web`, if you trust the composite: it decides where requests and tokens of the \
+                 environment go",
+            );
+            (vec![one], found.sources)
+        }
         "S2035" => {
             let level = |level: u32| {
                 let inner = format!("<implementation.composite name=\"t:hall{}\"/>", level - 1);

@@ -27,7 +27,7 @@ const HEAD: &str = "\
 These are the rules for composites. [diagnostics.md](diagnostics.md) describes each code, with an example. The example is
 also the test of the code: it has this fault and no other. The examples are in `saoms-lang/tests/suite/check/examples`, for
 `S50` in `tests/rules`, each in a file with the name of its code. `saoms-lang/tests/suite/check/report/reference.rs` makes
-those of `S0001` to `S0009`, `S2035`, `S3016` and `S4028`, which cannot be files.
+those of `S0001` to `S0009`, `S2035`, `S2072`, `S2073`, `S3016`, `S4028` and `S4031`, which cannot be files.
 
 ## Codes
 

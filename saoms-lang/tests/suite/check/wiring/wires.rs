@@ -112,7 +112,7 @@ fn bindings_of_targets() {
         3:46-49 error S2012: component `R` has no service `mve`
           fix: replace `mve` with `move` [3:46-49 "move"]
         5:27-37 warning S2009: `binding.ws` is not supported: calls through it fail
-          help: remove it; to reach other machines, use topics and the `url` of a message broker
+          help: remove it; to reach other machines, use `binding.rest`, or topics and the `url` of a message broker
     "#]]
     .assert_eq(&faults(&by_binding));
 }

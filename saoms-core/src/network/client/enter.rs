@@ -1,0 +1,142 @@
+//! How a program begins on a network: none of its components runs in another program that is there.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use saoms_api::host::cdr;
+
+use super::{BEGINS, RUNS};
+use crate::network::exchange::Settings;
+use crate::network::exchange::wire::Begins;
+use crate::network::key;
+use crate::network::port::Port;
+use crate::network::transport::TransportSession;
+
+/// Time in which others say that a component runs there: as long as a message and its answer take on a slow line.
+const ANSWERS: Duration = Duration::from_millis(500);
+/// Time between two questions, and between two looks at what was answered.
+const AGAIN: Duration = Duration::from_millis(100);
+const LOOK: Duration = Duration::from_millis(5);
+/// Programs that answer, at most: what more say is the same.
+const MOST_PROGRAMS: usize = 64;
+/// Longest patience of another program that counts: it says how long it is waited for.
+const LONGEST_PATIENCE: Duration = Duration::from_secs(60);
+
+/// Whether the components of a program may begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entry {
+    /// They run nowhere else.
+    Free,
+    /// The end was asked for before that was known.
+    Over,
+}
+
+/// A program in which a component runs that is about to begin here.
+struct Running {
+    name: String,
+    component: String,
+    patience: Duration,
+    first: Instant,
+    last: Instant,
+}
+
+/// Asks the other programs of a network whether components of this one run there, before these begin. One that was
+/// killed, or is about to end, is waited for: until it has said nothing for its patience.
+///
+/// # Errors
+/// A component runs in another program that is there: a text for people. Or the transport refuses a subscription.
+pub fn enter(
+    session: &TransportSession,
+    port: &Arc<Port>,
+    settings: &Settings,
+    mut tell: impl FnMut(String),
+    is_over: impl Fn() -> bool,
+) -> Result<Entry, String> {
+    session.subscribe(&key::begins_of_all(), BEGINS)?;
+    if settings.components.is_empty() {
+        return Ok(Entry::Free);
+    }
+    session.subscribe(&key::runs(settings.program), RUNS)?;
+    let begins = Begins { components: settings.components.iter().cloned().collect(), ..said_by(settings) };
+    let begins = cdr::encode(&begins);
+    let since = Instant::now();
+    let mut asked: Option<Instant> = None;
+    let mut running: BTreeMap<u64, Running> = BTreeMap::new();
+    loop {
+        if asked.is_none_or(|asked| asked.elapsed() >= AGAIN) {
+            asked = Some(Instant::now());
+            // What there is no room for is asked again.
+            let _ = session.put(&key::begins(settings.program), &begins, &[], true);
+        }
+        for frame in port.take_frames() {
+            let Ok(said) = cdr::decode::<Begins>(&frame.message) else { continue };
+            match frame.token {
+                RUNS if running.len() < MOST_PROGRAMS || running.contains_key(&said.program) => {
+                    let Some(component) = said.components.iter().find(|one| settings.components.contains(*one)) else {
+                        continue;
+                    };
+                    let now = Instant::now();
+                    let one = running.entry(said.program).or_insert_with(|| {
+                        let patience = Duration::from_millis(said.patience).min(LONGEST_PATIENCE);
+                        let (name, component) = (said.name.clone(), component.clone());
+                        tell(format!(
+                            "component `{component}` runs in program `{name}` still: waits for the end of that"
+                        ));
+                        Running { name, component, patience, first: now, last: now }
+                    });
+                    one.last = now;
+                }
+                // Of two that begin at once, one does.
+                BEGINS if settings.program < said.program => answer(session, settings, &said),
+                _ => {}
+            }
+        }
+        if let Some(one) = running.values().find(|one| one.last - one.first > one.patience) {
+            return Err(format!(
+                "component `{}` runs in program `{}`, which is there, and a component runs once in a fleet: end that \
+                 program first, or give the component another name",
+                one.component, one.name
+            ));
+        }
+        running.retain(|_, one| one.last.elapsed() <= one.patience);
+        if running.is_empty() && since.elapsed() >= ANSWERS {
+            return Ok(Entry::Free);
+        }
+        if is_over() {
+            return Ok(Entry::Over);
+        }
+        sleep(LOOK);
+    }
+}
+
+/// Says to a program that has begun what runs in this one.
+pub(super) fn introduce(session: &TransportSession, settings: &Settings, program: u64) {
+    let components: Vec<String> = settings.components.iter().cloned().collect();
+    if !components.is_empty() {
+        let runs = Begins { components, ..said_by(settings) };
+        // Who does not hear it waits longer for this program, should it be killed.
+        let _ = session.put(&key::runs(program), &cdr::encode(&runs), &[], true);
+    }
+}
+
+/// Says to a program that is about to begin which of its components run in this one.
+pub(super) fn answer(session: &TransportSession, settings: &Settings, begins: &Begins) {
+    let both: Vec<String> =
+        begins.components.iter().filter(|one| settings.components.contains(*one)).cloned().collect();
+    if !both.is_empty() && begins.program != settings.program {
+        let runs = Begins { components: both, ..said_by(settings) };
+        // It asks again.
+        let _ = session.put(&key::runs(begins.program), &cdr::encode(&runs), &[], true);
+    }
+}
+
+fn said_by(settings: &Settings) -> Begins {
+    Begins {
+        program: settings.program,
+        name: settings.name.clone(),
+        patience: settings.patience / 1_000_000,
+        components: Vec::new(),
+    }
+}

@@ -1,0 +1,69 @@
+//! A component runs once in a fleet.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::nodes::{start, write_fleet};
+use super::programs::{Given, Programs, Transport};
+use super::{reader, receives_all, senders};
+
+const GIVEN: Given<'_> = &[("count", "10000"), ("each", "100")];
+
+#[test]
+fn a_component_that_runs_in_another_program_is_refused_and_that_one_is_not_disturbed() {
+    for transport in [Transport::Relay, Transport::Zenoh] {
+        let programs = Programs::over(transport);
+        let broker = programs.broker();
+        let reader = reader(&programs, "reader", programs.port, &[("count", "10000")]);
+        let first = senders(&programs, programs.port, GIVEN);
+        programs.until(&first, "Sender2        begins");
+        let one: (_, _, Given<'_>) = ("Sender2", "numbers.Sender", GIVEN);
+        let second = programs.tasks("second", programs.port, &[one]);
+        programs.ends(&second, 1);
+        let printed = second.printed();
+        let said =
+            "component `Sender2` runs in program `senders`, which is there, and a component runs once in a fleet";
+        for text in ["runs in program `senders` still: waits for the end of that", said, "nothing runs"] {
+            assert!(printed.contains(text), "{text}\n{printed}");
+        }
+        receives_all(&programs, &reader, "10000");
+        programs.ends(&first, 0);
+        assert!(!programs.printed().contains("`second` is on the network"), "{}", programs.printed());
+        programs.end_without(&broker, &["wrong:", "panicked", "are lost", "has begun anew"]);
+    }
+}
+
+#[test]
+fn a_node_that_runs_already_is_refused() {
+    let programs = Programs::new();
+    write_fleet(&programs, "at 2s luggage (9,1) to (9,10)", &[("gate-a", "500"), ("gate-b", "500")]);
+    let all = ["control", "traffic", "gate-a", "gate-b"].map(|node| start(&programs, "fleet.composite", node, &[]));
+    programs.until(&all[2], "has joined the network");
+    let again = programs.run("again", &["run", "fleet.composite", "--node", "gate-a"]);
+    programs.ends(&again, 1);
+    let printed = again.printed();
+    assert!(printed.contains("runs in program `gate-a`, which is there"), "{printed}");
+    assert!(printed.contains("this program runs node `gate-a`"), "{printed}");
+    all.iter().for_each(|program| programs.ends(program, 0));
+}
+
+/// As a service manager restarts a program that hangs.
+#[test]
+fn a_program_takes_the_place_of_one_that_says_nothing_any_more() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let reader = reader(&programs, "reader", programs.port, &[("count", "10000")]);
+    let first = senders(&programs, programs.port, GIVEN);
+    programs.until(&first, "Sender2        begins");
+    // It answers once, and then no more.
+    let second = senders(&programs, programs.port, GIVEN);
+    programs.until(&second, "runs in program `senders` still: waits for the end of that");
+    first.signal(libc::SIGSTOP);
+    receives_all(&programs, &reader, "10000");
+    programs.ends(&second, 0);
+    // It comes back when all is over, and changes nothing.
+    first.signal(libc::SIGCONT);
+    sleep(Duration::from_secs(1));
+    programs.stop(&first);
+    programs.end_without(&broker, &["panicked"]);
+}
