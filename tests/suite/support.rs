@@ -1,9 +1,13 @@
 //! The command as its users start it, and the files of this repository.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Read, Write};
+use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
 
 /// The folder of the repository.
 pub(crate) fn root() -> &'static Path {
@@ -66,6 +70,31 @@ impl Drop for Program {
     }
 }
 
+/// Time within which a program answers that starts.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Sends a request to a program over its socket, whose answer the stream has.
+pub(crate) fn send(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<UnixStream> {
+    let mut stream = UnixStream::connect(socket)?;
+    let length = body.len();
+    let head = format!("{method} {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: {length}");
+    stream.write_all(format!("{head}\r\n\r\n{body}").as_bytes())?;
+    Ok(stream)
+}
+
+/// Sends a request to a program over its socket; gives the body of the answer, if one came as a whole.
+pub(crate) fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<Value> {
+    let mut stream = send(socket, method, path, body)?;
+    stream.set_read_timeout(Some(PATIENCE))?;
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer)?;
+    let (head, body) = answer.split_once("\r\n\r\n").ok_or(io::ErrorKind::UnexpectedEof)?;
+    if !head.starts_with("HTTP/1.1 200") {
+        return Err(io::Error::other(answer));
+    }
+    Ok(serde_json::from_str(body)?)
+}
+
 /// Runs `saoms` in the folder of the repository.
 pub(crate) fn saoms(arguments: &[&str]) -> Output {
     saoms_in(root(), arguments)
@@ -110,4 +139,13 @@ pub(crate) fn text(output: &Output) -> String {
 /// Exit code, standard output and standard error.
 pub(crate) fn answer(output: &Output) -> (i32, String, String) {
     (code(output), stdout(output), stderr(output))
+}
+
+/// To be called where namespaces cannot be made, before a test is skipped: what is not installed can be, and is
+/// required with `SAOMS_PEERS=required`; what a container forbids cannot be helped.
+pub(crate) fn assert_namespace_tools_are_installed() {
+    let looks = "for tool in unshare nsenter mount ip; do command -v $tool || exit 1; done";
+    let are_installed = Command::new("sh").args(["-c", looks]).stdout(Stdio::null()).status().unwrap().success();
+    let are_required = std::env::var("SAOMS_PEERS").as_deref() == Ok("required");
+    assert!(are_installed || !are_required, "`unshare`, `nsenter`, `mount` or `ip` is not installed");
 }

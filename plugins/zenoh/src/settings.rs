@@ -159,8 +159,8 @@ impl Settings {
         set("scouting/gossip/enabled", json!(false))?;
         set("scouting/delay", json!(0))?;
         set("transport/link/tx/lease", json!(LEASE))?;
-        // Room for a burst. What finds none waits for 1 ms, and is dropped then: without that wait, a program that sends
-        // as much as the machine carries would lose most of it.
+        // Room for a burst. What finds none waits for 1 ms, and is dropped then: without that wait, a program that
+        // sends as much as the machine carries would lose most of it.
         set("transport/link/tx/queue/size/data", json!(MOST_BATCHES))?;
         let mut users = None;
         if let (Some(user), Some(password)) = (&self.user, &self.password) {

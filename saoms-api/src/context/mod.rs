@@ -350,8 +350,12 @@ impl<'a> Context<'a> {
 
     /// What other components of its class and site have [kept](Context::keep) that ended, or got new instances, in the
     /// change of the fleet with which this instance began: whoever takes over a part of their work goes on from that.
-    /// None of them has executed since, and if the change is taken back, they go on as they were. A component of a
-    /// library gets nothing.
+    /// None of them has executed since, and if the change is taken back, they go on as they were.
+    ///
+    /// It is left on until it is taken: what an earlier change left to a component that has kept nothing since is
+    /// there, too, after what is newer, also if this component itself kept that. At the start of a run that goes on
+    /// from a state folder, it is what all others of the class and site left there. A component of a library gets
+    /// nothing.
     pub fn kept_by_others(&self) -> Vec<KeptByOther<'_>> {
         self.host.kept_by_others()
     }

@@ -14,7 +14,7 @@ const LONG: u64 = 20;
 const ASK_AGAIN: u64 = 40;
 
 /// The question to all robots where they are, since a zone began a term.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Asking {
     /// Components whose robots have answered.
     heard: BTreeSet<u32>,
@@ -22,24 +22,36 @@ pub(super) struct Asking {
     gone: BTreeSet<u32>,
     /// Number of executions since it was put.
     executions: u64,
+    /// True if somebody has answered, or is gone, since it was looked who has not.
+    is_changed: bool,
+}
+
+impl Default for Asking {
+    fn default() -> Asking {
+        Asking { heard: BTreeSet::new(), gone: BTreeSet::new(), executions: 0, is_changed: true }
+    }
 }
 
 impl Asking {
     /// A robot has answered.
     pub(super) fn note_heard(&mut self, component: u32) {
-        self.heard.insert(component);
+        self.is_changed |= self.heard.insert(component);
     }
 
     /// Somebody took a robot off the floor.
     pub(super) fn note_gone(&mut self, robot: u32) {
-        self.gone.insert(robot);
+        self.is_changed |= self.gone.insert(robot);
     }
 
-    /// The components whose robots have not answered, of those that were ever scheduled.
-    pub(super) fn unheard(&self, context: &Context<'_>) -> Vec<KnownPublisher> {
+    /// The components whose robots have not answered, of those that were ever scheduled; `None` while it need not be
+    /// looked, since all publishers have to be: nobody has answered, and the question is not due.
+    pub(super) fn unheard(&mut self, context: &Context<'_>, is_due: bool) -> Option<Vec<KnownPublisher>> {
+        if !(std::mem::take(&mut self.is_changed) || is_due || self.has_become_long()) {
+            return None;
+        }
         let begun = context.publishers(&GRANT_REQUEST).into_iter().filter(|publisher| publisher.has_begun);
         let is_gone = |number: Option<u32>| number.is_some_and(|robot| self.gone.contains(&robot));
-        begun.filter(|one| !self.heard.contains(&one.sender) && !is_gone(one.number)).collect()
+        Some(begun.filter(|one| !self.heard.contains(&one.sender) && !is_gone(one.number)).collect())
     }
 
     /// Counts an execution. True if the question is to be put again. A zone that grants does so ever more rarely: the
@@ -59,7 +71,7 @@ impl Asking {
         self.executions == REPEAT
     }
 
-    /// True once in the execution after which it has lasted for long.
+    /// True once, in the execution after which it has lasted for long.
     pub(super) fn has_become_long(&self) -> bool {
         self.executions == LONG + 1
     }

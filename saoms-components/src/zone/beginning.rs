@@ -90,7 +90,13 @@ fn inherited(robot: u32, territory: &Territory, former: &[&Ledger]) -> Option<Me
         at: territory.closest(request.block),
         ..request.clone()
     };
-    if !steps.is_empty() {
+    let over = newest(Some(true));
+    // Somebody said of one to some of the zones alone that it is off the floor.
+    let is_off = over.is_some_and(|over| {
+        let incarnations = known().map(|(_, member)| member.request.incarnation);
+        incarnations.min() > Some(0) && newest(Some(false)).is_none_or(|other| !is_after(other, over))
+    });
+    if !steps.is_empty() && !is_off {
         let granted = steps.iter().map(|step| step.number).max().unwrap_or(0);
         let is_lost = member.request.standing == Standing::Lost;
         let request = GrantRequest {
@@ -107,15 +113,20 @@ fn inherited(robot: u32, territory: &Territory, former: &[&Ledger]) -> Option<Me
         return Some(Member::new(request, steps, granted));
     }
     // Of one that somebody took off the floor only a new incarnation is taken.
-    let over = newest(Some(true))?;
-    let is_back = newest(Some(false)).is_some_and(|other| other.request.incarnation > over.request.incarnation);
+    let over = over?;
+    let is_back = newest(Some(false)).is_some_and(|other| is_after(other, over));
     (!is_back).then(|| Member::new(of_zone(&over.request), Vec::new(), LAST_NUMBER))
 }
 
-/// The place of the last of some zones that had a block.
+/// True if this is a later incarnation of the robot.
+fn is_after(one: &Member, other: &Member) -> bool {
+    one.request.incarnation > other.request.incarnation
+}
+
+/// The place of the last of some zones that had a block; of records of one term, the first one.
 fn last(former: &[&Ledger], block: Block) -> Option<usize> {
     let had = former.iter().enumerate().filter(|(_, ledger)| ledger.territory().contains(block));
-    had.max_by_key(|(_, ledger)| ledger.territory().term).map(|(place, _)| place)
+    had.rev().max_by_key(|(_, ledger)| ledger.territory().term).map(|(place, _)| place)
 }
 
 fn blocks(territory: &Territory) -> impl Iterator<Item = Block> + use<> {
@@ -228,6 +239,32 @@ mod tests {
         let back = begin(territory(1, 55, 0, 4), Some(own()), vec![between()]);
         assert_eq!((back.ledger.territory().term, back.is_new, back.is_complete), (61, true, true));
         assert_eq!([1, 2, 3].map(|robot| held(&back, robot)), [vec![], vec![0], vec![3]]);
+    }
+
+    #[test]
+    fn a_robot_that_only_one_zone_knows_to_be_off_the_floor_holds_nothing() {
+        let first = || {
+            let mut first = record(territory(1, 50, 0, 3), &[(1, &[])]);
+            first.ledger.end(1, 5);
+            first
+        };
+        let beginning =
+            begin(territory(3, 60, 0, 6), None, vec![first(), record(territory(2, 70, 3, 3), &[(1, &[4])])]);
+        assert!(held(&beginning, 1).is_empty() && beginning.ledger.has_ended(1, 5));
+        // It may have come back where its incarnation is not known yet.
+        let mut second = record(territory(2, 70, 3, 3), &[(1, &[4])]);
+        second.ledger.begin_term(71);
+        let beginning = begin(territory(3, 60, 0, 6), None, vec![first(), second]);
+        assert_eq!(held(&beginning, 1), [4]);
+    }
+
+    #[test]
+    fn of_two_records_of_a_term_the_newer_one_counts() {
+        // A zone that was replaced without other borders, and what it had left to another one that never began.
+        let own = record(territory(1, 50, 0, 4), &[(1, &[3])]);
+        let left = record(territory(1, 50, 0, 4), &[(1, &[2])]);
+        let beginning = begin(territory(1, 60, 0, 5), Some(own), vec![left]);
+        assert_eq!(held(&beginning, 1), [3]);
     }
 
     #[test]

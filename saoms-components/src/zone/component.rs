@@ -162,7 +162,6 @@ impl Zone {
         let (own, others) = records(context);
         let is_part = |territory: &Territory| (map.width(), map.height()) != (territory.width, territory.height);
         let has_record = own.is_some() || !others.is_empty() || !context.kept().is_empty();
-        let was_part = own.as_ref().is_some_and(|own| is_part(own.ledger.territory()));
         let term = context.date().unwrap_or_else(|| context.now().since(Time::START));
         let term = u64::try_from(term.as_nanos()).unwrap_or(u64::MAX).saturating_add(1);
         let territory = self.properties.territory(term, &map).map_err(|finding| Failure::from(*finding))?;
@@ -181,7 +180,8 @@ impl Zone {
             context.send(&self.removals_asked, Fault::any())?;
         }
         let Territory { corner, width, height, .. } = *ledger.territory();
-        if is_part(ledger.territory()) || was_part {
+        // The instance before may have read a part of the map alone.
+        if is_part(ledger.territory()) || has_record {
             let columns = corner.x..=corner.x.saturating_add_unsigned(width - 1);
             let rows = corner.y..=corner.y.saturating_add_unsigned(height - 1);
             context.set_region(&self.requests, Some(Region::new(columns, rows)))?;
@@ -365,8 +365,10 @@ impl Zone {
             }
             return Ok(true);
         };
-        let unheard = asking.unheard(context);
-        if unheard.is_empty() {
+        let has_lasted = asking.has_lasted();
+        let is_due = asking.is_due(self.open);
+        let unheard = asking.unheard(context, is_due);
+        if unheard.as_ref().is_some_and(Vec::is_empty) {
             self.asking = None;
             if !std::mem::replace(&mut self.open, true) {
                 self.keep_all(&state.ledger, context)?;
@@ -374,15 +376,15 @@ impl Zone {
             }
             return Ok(true);
         }
-        if asking.has_lasted() && !self.open {
+        if has_lasted && !self.open {
             // Zones that have its blocks after it begin a higher term.
             let (key, bytes) = memory::territory(&state.ledger, false);
             context.keep(key, &bytes)?;
         }
-        if asking.is_due(self.open) || is_unknown && self.open {
+        if is_due || is_unknown && self.open {
             context.send(&self.territories, state.ledger.territory().clone())?;
         }
-        if asking.has_become_long() && !self.open {
+        if let Some(unheard) = unheard.filter(|_| asking.has_become_long() && !self.open) {
             let (sent, cause) = (context.now(), Cause::default());
             let header = |one: &KnownPublisher| Header { sender: one.sender, sent, cause };
             let names: Vec<&str> = unheard.iter().filter_map(|one| context.sender_name(header(one))).collect();

@@ -255,6 +255,10 @@ impl Ledger {
         let is_newer = request.number > member.request.number;
         if is_newer {
             member.request = request.clone();
+            // In an earlier term it received steps with higher numbers, and takes none with lower ones.
+            if request.received != LAST_NUMBER {
+                member.granted = member.granted.max(request.received);
+            }
         }
         for step in &released {
             self.free(step.block, request.robot);

@@ -7,7 +7,9 @@ use super::deadlock::StandingStill;
 use super::ground::Ground;
 use super::ledger::{Ledger, Member};
 use super::maneuver::Maneuver;
+use super::passage::{Held, Link, Passage, Wish};
 use super::plan::plan;
+use super::territories::Territories;
 use crate::grid::{Block, Map};
 use crate::messages::{GrantRequest, Standing, Step, Territory, link};
 
@@ -181,6 +183,29 @@ fn a_robot_that_is_gone_from_a_border_and_begins_anew_elsewhere_is_not_there_any
     let request = &site.member(1).request;
     assert_eq!((request.block, request.end, request.standing), (at(11, 0), at(10, 0), Standing::MakesWay));
     assert!(!site.member(1).wants_to_go());
+}
+
+#[test]
+fn a_robot_takes_the_first_step_of_a_zone_that_heard_its_presence_before_its_request() {
+    let robot = |zone: u32, received: u64| {
+        let territory = Territory { zone, term: 1, corner: at(0, 0), width: 2, height: 1 };
+        let link = Link { territory: territory.clone(), received, said: GrantRequest::default(), heard: 0 };
+        let held = vec![Held { zone: 0, step: Step { number: 0, block: at(2, 0) } }];
+        Passage::with(1, 7, (held, false), Territories::with(vec![territory], Vec::new()), vec![link])
+    };
+    let mut passage = robot(1, 20);
+    let mut site = Site::new("...", 2);
+    // It is known of earlier, in a former incarnation as far as the zone can tell.
+    site.hold(1, &[at(1, 0)], at(0, 0), 5);
+    site.ledger.begin_term(2);
+    passage.hear_territory(site.ledger.territory());
+    let wish = Wish { goal: Some(at(0, 0)), ..Wish::default() };
+    let [request] = &passage.requests(wish, false)[..] else { panic!() };
+    assert!(site.ledger.hear_clear(1, 7, (at(2, 0), at(2, 0))));
+    site.ledger.hear(request);
+    assert!(site.ledger.grant(1, at(1, 0)));
+    assert!(passage.hear(&site.ledger.message(1).unwrap()));
+    assert_eq!(passage.next(), Some(at(1, 0)));
 }
 
 #[test]

@@ -150,6 +150,59 @@ fn what_others_kept_is_left_to_those_of_their_class_that_begin_in_a_change() {
 }
 
 #[test]
+fn what_was_left_to_one_that_did_not_begin_is_left_again_also_to_whom_it_came_from() {
+    let fleet = |periods: [u32; 2]| {
+        let [first, second] = periods;
+        format!("B ledger period={first}\nD ledger period={second} startup=false\nX actor period=10")
+    };
+    let (running, diary) = start(&fleet([5, 10]), simulated(60), None);
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Actor>()).unwrap();
+    registry.add(Registration::of::<Ledger>()).unwrap();
+    let change = |at: u64, periods: [u32; 2]| {
+        running.run_until(Time::from_nanos(at * 1_000_000));
+        let wanted = assembly_of(&fleet(periods), &registry);
+        assert_eq!(running.handle().apply(&wanted, ChangeOptions::allowing_loss()).unwrap().replaced.len(), 2);
+    };
+    change(24, [6, 20]);
+    change(37, [7, 30]);
+    running.handle().schedule("D").unwrap();
+    // By then, it has kept something of its own.
+    change(45, [8, 40]);
+    running.run_to_end();
+    let lines = diary.lines();
+    let begins = lines.lines().filter_map(|line| Some(line.split_once("] ")?.1)).filter(|line| line.contains("begins"));
+    let expected = [
+        "B: begins with 0",
+        "B: begins with 5",
+        "B: begins with 7, others kept [5]",
+        "D: begins with 0, others kept [7, 5]",
+        "B: begins with 8, others kept [1]",
+        "D: begins with 1, others kept [8]",
+    ];
+    assert_eq!(begins.collect::<Vec<_>>(), expected, "{lines}");
+}
+
+#[test]
+fn what_an_earlier_program_kept_is_left_to_all_of_that_class_that_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |fleet: &str| {
+        let (running, diary) = start(fleet, Settings::default(), Some(folder.path()));
+        running.run_to_end();
+        let lines = diary.lines();
+        let begins = lines.lines().filter_map(|line| Some(line.split_once("] ")?.1));
+        begins.filter(|line| line.contains("begins with")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(run("A ledger period=5 most=3\nB ledger period=2 most=20"), ["A: begins with 0", "B: begins with 0"]);
+    let [first, second] = &run("A ledger period=5 most=3\nC ledger period=5 most=1")[..] else { panic!() };
+    let (own, others) = first.split_once(", of an earlier program, others kept ").unwrap();
+    let own = own.strip_prefix("A: begins with ").unwrap();
+    let other = others.trim_matches(['[', ']']);
+    assert!(own.parse::<u32>().unwrap() >= 3 && other.parse::<u32>().unwrap() >= 20, "{first}");
+    assert_eq!(*second, format!("C: begins with 0, others kept [{own}, {other}]"));
+}
+
+#[test]
 fn a_failure_in_virtual_time_loses_what_was_not_committed_with_its_messages() {
     check(
         "A ledger period=10 fails=[ 30 ] restart=5/3

@@ -4,8 +4,7 @@
 //! the fleet knows after each restart. `SAOMS_KILLS=1000` makes it a long one.
 
 use std::fs;
-use std::io::{self, Read, Write};
-use std::os::unix::net::UnixStream;
+use std::io;
 use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -13,7 +12,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use super::state::crossing;
-use crate::support::{Program, command, empty_folder, saoms_in, text};
+use crate::support::{PATIENCE, Program, ask, command, empty_folder, saoms_in, send, text};
 
 /// Number of kills, unless `SAOMS_KILLS` says another one.
 const KILLS: u64 = 12;
@@ -22,24 +21,6 @@ const CRASHING: [&str; 9] =
     ["Robot1", "Robot2", "Robot3", "Robot4", "World", "Zone", "Master", "MasterRobot", "Environment"];
 /// Most pieces that are open at once, so that the robots keep up.
 const MOST_OPEN: u64 = 12;
-/// Time within which a program answers that starts.
-pub(super) const PATIENCE: Duration = Duration::from_secs(30);
-
-/// Sends a request over a socket; gives the body of the answer, if one came as a whole.
-pub(super) fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Result<Value> {
-    let mut stream = UnixStream::connect(socket)?;
-    stream.set_read_timeout(Some(PATIENCE))?;
-    let length = body.len();
-    let head = format!("{method} {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: {length}");
-    stream.write_all(format!("{head}\r\n\r\n{body}").as_bytes())?;
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer)?;
-    let (head, body) = answer.split_once("\r\n\r\n").ok_or(io::ErrorKind::UnexpectedEof)?;
-    if !head.starts_with("HTTP/1.1 200") {
-        return Err(io::Error::other(answer));
-    }
-    Ok(serde_json::from_str(body)?)
-}
 
 /// What the world knows of luggage: all pieces, and those that are open.
 pub(super) fn pieces(socket: &Path) -> io::Result<(u64, u64)> {
@@ -156,10 +137,7 @@ fn kill_at_random_moments(folder: &str, crashes: bool) {
             }
             sleep(until.saturating_duration_since(Instant::now()));
             // One that has no answer before the kill.
-            let mut stream = UnixStream::connect(&socket).unwrap();
-            let line = "luggage (0,1) to (5,4)";
-            let head = format!("POST /v1/events HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}", line.len());
-            stream.write_all(format!("{head}\r\n\r\n{line}").as_bytes()).unwrap();
+            let _stream = send(&socket, "POST", "/v1/events", "luggage (0,1) to (5,4)").unwrap();
             unanswered += 1;
             sleep(Duration::from_micros(dice.below(15_000)));
         }

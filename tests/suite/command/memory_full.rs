@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use super::memory::{PATIENCE, ask, pieces, wait_for_pieces};
+use super::memory::{pieces, wait_for_pieces};
 use super::state::crossing;
-use crate::support::{PROGRAM, Program, empty_folder};
+use crate::support::{PATIENCE, PROGRAM, Program, ask, assert_namespace_tools_are_installed, empty_folder};
 
 /// Size of the disk: the log and one in its place need 8 MiB at first.
 const SIZE: &str = "24m";
@@ -79,6 +79,7 @@ fn a_full_disk_keeps_what_was_accepted_and_refuses_more() {
     let fleet = crossing().replace("at 0.1s 80 times luggage random to random", "at 0.1s luggage (1,1) to (2,2)");
     fs::write(folder.join("f.composite"), fleet).unwrap();
     let Some(disk) = Disk::mount(&folder) else {
+        assert_namespace_tools_are_installed();
         println!("skipped: this machine lets nobody mount a disk in namespaces of his own");
         return;
     };

@@ -331,8 +331,8 @@ fn robots_agree_although_messages_overtake_each_other() {
     }
 }
 
-/// A piece far away, and an endless stream of others beside the robot: `optimal` prefers short ways, but for 400 steps at
-/// most.
+/// A piece far away, and an endless stream of others beside the robot: `optimal` prefers short ways, but for
+/// 400 steps at most.
 #[test]
 fn luggage_far_away_is_not_left_for_ever_to_closer_luggage() {
     let scenario = "at 1s luggage (20,20) to (20,16); from 1s every 500ms 300 times luggage (1,1) to (2,2)";

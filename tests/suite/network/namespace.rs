@@ -3,6 +3,8 @@
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, Command, Stdio};
 
+use crate::support::assert_namespace_tools_are_installed;
+
 /// A network namespace, in which the loopback device is the only link. It ends with this.
 pub(super) struct Namespace {
     holder: Child,
@@ -22,11 +24,7 @@ impl Namespace {
         if line.trim() == "ready" {
             return namespace;
         }
-        // What is not installed can be; what a container forbids cannot be helped.
-        let has_tools = "for tool in unshare nsenter ip; do command -v $tool || exit 1; done";
-        let has_tools = Command::new("sh").args(["-c", has_tools]).stdout(Stdio::null()).status().unwrap().success();
-        let is_required = std::env::var("SAOMS_PEERS").as_deref() == Ok("required");
-        assert!(has_tools || !is_required, "`unshare`, `nsenter` or `ip` is not installed");
+        assert_namespace_tools_are_installed();
         let _ = writeln!(std::io::stderr(), "skipped: `unshare -rn` makes no network of its own here");
         None
     }

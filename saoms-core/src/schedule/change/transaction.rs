@@ -137,7 +137,10 @@ impl<'a> Change<'a> {
         engine.publishers = None;
         let replaced: Vec<u32> = replaced.iter().map(|one| one.current as u32).collect();
         self.take_out(&mut engine, &removed, &replaced);
-        self.estate = self.left_by(&engine, removed.iter().chain(&replaced));
+        self.estate = match engine.phase {
+            RunPhase::Starting => engine.left_by_earlier_program(),
+            _ => self.left_by(&engine, removed.iter().chain(&replaced)),
+        };
         engine.leave_to(&self.added, &self.estate);
         self.shared.release(engine);
         for place in order {
@@ -222,7 +225,7 @@ impl<'a> Change<'a> {
         Estate::of(numbers.filter_map(|number| {
             let slot = &engine.slots[*number as usize];
             let out = leaving.get(number).copied().or_else(|| self.present.get(number).map(|body| &**body));
-            Some((&out.or(slot.body.as_deref())?.part, slot.is_alive()))
+            Some(&out.or(slot.body.as_deref())?.part)
         }))
     }
 

@@ -74,12 +74,15 @@ impl Engine {
     /// Keeps what an execution has kept, with the events that it sends over a network: all of it, or nothing.
     #[cold]
     pub(super) fn keep(&mut self, part: &mut Part, events: Vec<Change>, now: u64) {
-        let Part { to_keep, stored, index, name, .. } = part;
+        let Part { to_keep, stored, estate, index, name, .. } = part;
         let index = &*index;
         let change =
             |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
         let changes: Vec<Change> = to_keep.iter().map(change).chain(events).collect();
         let before: Vec<StoredChange> = to_keep.drain(..).map(|change| stored.change(change)).collect();
+        if !before.is_empty() {
+            estate.set_taken(true);
+        }
         if self.memory.is_over(self.phase) {
             return;
         }
@@ -195,6 +198,9 @@ impl Engine {
         for Uncommitted { before, messages: unsent, bytes, .. } in slot.uncommitted.drain(..).rev() {
             self.memory.note_held_back(bytes, 0);
             messages += unsent.len();
+            if !before.is_empty() {
+                part.estate.set_taken(false);
+            }
             before.into_iter().rev().for_each(|change| drop(part.stored.change(change)));
         }
         messages

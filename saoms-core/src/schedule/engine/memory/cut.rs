@@ -138,6 +138,7 @@ impl Engine {
         let has_to_leave = slot.policy.periodic && slot.has_to_leave();
         let form = ComponentForm {
             class: slot.spec.class.name().to_owned(),
+            site: slot.spec.site.to_string(),
             is_scheduled: slot.is_scheduled()
                 || has_to_leave
                 || !slot.policy.periodic

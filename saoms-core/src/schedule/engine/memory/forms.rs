@@ -76,6 +76,7 @@ pub(super) struct SavedForm {
 #[message(name = "saoms_msgs/msg/RememberedComponent")]
 pub(super) struct ComponentForm {
     pub(super) class: String,
+    pub(super) site: String,
     /// True if it is scheduled, and until when.
     pub(super) is_scheduled: bool,
     pub(super) until: u64,

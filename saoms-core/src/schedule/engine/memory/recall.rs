@@ -21,6 +21,8 @@ use crate::observe::Occurrence;
 use crate::report::{PartOfReport, Sections};
 use crate::schedule::change;
 use crate::schedule::component::body::Body;
+use crate::schedule::component::estate::Estate;
+use crate::schedule::component::stored::Stored;
 use crate::schedule::engine::slot::Slot;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
@@ -188,6 +190,20 @@ impl Engine {
             }
         }
         spec
+    }
+
+    /// What components of an earlier program kept, for those of their class and site: the fleet may be another one.
+    pub(in crate::schedule) fn left_by_earlier_program(&self) -> Estate {
+        let Some(recalled) = &self.memory.recalled else { return Estate::default() };
+        let numbers: HashMap<&str, u32> = recalled.names.iter().map(String::as_str).zip(0..).collect();
+        let kept = recalled.components.iter().filter_map(|(path, RecalledComponent { form, .. })| {
+            let entries = self.found.of(path).filter(|entries| !entries.is_empty())?;
+            let number = *numbers.get(path.as_str())?;
+            Some((number, form.class.clone(), form.site.clone(), Stored::new(entries.clone())))
+        });
+        let mut kept: Vec<_> = kept.collect();
+        kept.sort_unstable_by_key(|(number, ..)| *number);
+        Estate::of_earlier_program(kept.into_iter())
     }
 
     /// Gives a new slot what an earlier program knew of its component.
