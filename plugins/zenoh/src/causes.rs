@@ -61,9 +61,16 @@ pub(super) fn failure(settings: &Settings, cause: &str) -> Failure {
     if has("in response to an OpenSyn") || has("in response to an InitSyn") {
         return failed(match &settings.user {
             Some(_) if has("InitSyn") => {
-                "the broker refuses this program: it speaks another version of Zenoh".to_owned()
+                "the broker refuses this program, since it speaks another version of Zenoh: build both from one version"
+                    .to_owned()
             }
             Some(user) => format!("the broker refuses user `{user}`: the password is wrong, or it has no such user"),
+            // Zenoh says the same of both.
+            None if has("InitSyn") => {
+                "the broker asks for a user, or speaks another version of Zenoh: give `user`, and `password` or \
+                 `passwordFile`, or build both programs from one version"
+                    .to_owned()
+            }
             None => "the broker asks for a user: give `user`, and `password` or `passwordFile`".to_owned(),
         });
     }

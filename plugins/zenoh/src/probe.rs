@@ -31,6 +31,8 @@ pub(super) fn probe(address: &str) -> Result<(), Failure> {
                 why = match error.kind() {
                     ErrorKind::ConnectionRefused => "nobody listens there".to_owned(),
                     ErrorKind::TimedOut => "the machine does not answer".to_owned(),
+                    ErrorKind::HostUnreachable => "the machine cannot be reached, or is off".to_owned(),
+                    ErrorKind::NetworkUnreachable => "this machine has no network that leads there".to_owned(),
                     _ => error.to_string(),
                 };
                 continue;

@@ -30,9 +30,12 @@ use settings::Resolver;
 
 /// Reasons for which a network is waited for that are told, at most.
 const MOST_REASONS: usize = 8;
+/// What people do about a broker that is not there.
+const TO_DO: &str = "start it, or correct `url`";
 /// Pause before a network is tried again that is not there yet.
 const PAUSE: Duration = Duration::from_millis(200);
-/// Time without a sign of life after which a program is missed: three of its longest periods, between these.
+/// Time without a sign of life after which a program is missed: three of its longest periods, between these. Signs of
+/// life wait for no execution, so that more would only keep people, and the end, waiting.
 const LEAST_PATIENCE: Duration = Duration::from_secs(1);
 const LONGEST_PATIENCE: Duration = Duration::from_secs(10);
 
@@ -267,12 +270,13 @@ impl Who<'_> {
                     Duration::ZERO => String::new(),
                     longest => format!(" within the {} of `--connect-timeout`", format_duration(longest)),
                 };
-                return Err(self.error(&format!("no message broker was there{within}: {why}")));
+                return Err(self.error(&format!("no message broker was there{within}: {why}: {TO_DO}")));
             }
             if !told.contains(&why) && told.len() < MOST_REASONS {
                 let needs =
                     format!("{} {}", self.shown(), if self.components.len() == 1 { "needs it" } else { "need it" });
-                handle.note(Level::Warning, format!("waits for the message broker at `{url}`: {why}; {needs}"));
+                handle
+                    .note(Level::Warning, format!("waits for the message broker at `{url}`: {why}: {TO_DO}; {needs}"));
                 told.push(why);
             }
             if (wait.is_over)() {
@@ -280,7 +284,8 @@ impl Who<'_> {
             }
             sleep(PAUSE);
             if let Some(limit) = over(wait.limit) {
-                let error = format!("no message broker was there within the {} of `--for`", format_duration(limit));
+                let limit = format_duration(limit);
+                let error = format!("no message broker was there within the {limit} of `--for`: {TO_DO}");
                 return Err(self.error(&error));
             }
         }

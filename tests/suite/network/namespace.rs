@@ -48,8 +48,12 @@ impl Namespace {
 
     /// Takes the link down, or up.
     pub(super) fn set_link(&self, is_up: bool) {
-        let state = if is_up { "up" } else { "down" };
-        assert!(self.enter().args(["ip", "link", "set", "lo", state]).status().unwrap().success());
+        self.ip(&["link", "set", "lo", if is_up { "up" } else { "down" }]);
+    }
+
+    /// Changes the network with `ip`.
+    pub(super) fn ip(&self, arguments: &[&str]) {
+        assert!(self.enter().arg("ip").args(arguments).status().unwrap().success(), "{arguments:?}");
     }
 }
 
