@@ -5,6 +5,7 @@ use std::sync::Arc;
 use saoms_api::Level;
 
 use super::exchange::News;
+use super::fleet::Membership;
 
 /// Components that are named of a program that is not heard, at most.
 const MOST_NAMED: usize = 3;
@@ -20,8 +21,17 @@ fn unheard(name: &str, components: &[Arc<str>]) -> String {
     }
 }
 
-/// What happened to the network, for people.
-pub(super) fn told(news: &News) -> (Level, String) {
+/// Components with a word before them, such as `component `A` and 2 more`.
+fn components(all: &[String]) -> String {
+    match all {
+        [] => "its components".to_owned(),
+        [one] => format!("component `{one}`"),
+        [first, rest @ ..] => format!("component `{first}` and {} more", rest.len()),
+    }
+}
+
+/// What happened to the network of a program with this name, for people.
+pub(super) fn told(news: &News, membership: &Membership, own: &str) -> (Level, String) {
     match news {
         News::Joined { name, .. } => (Level::Info, format!("program `{name}` is on the network")),
         News::GoesOn { name, .. } => {
@@ -73,11 +83,13 @@ pub(super) fn told(news: &News) -> (Level, String) {
             Level::Warning,
             format!("component `{component}` has begun anew in program `{name}`, after {after} messages"),
         ),
-        News::Differs { name, topic, .. } => (
+        News::Differs { name, component, topic, .. } => (
             Level::Error,
             format!(
-                "program `{name}` sends other messages on topic `{topic}` than this one reads: they are ignored; build both programs \
-                 from one version"
+                "component `{component}` of program `{name}` sends other messages on topic `{topic}` of the network `{}` than {} of this \
+                 program, `{own}`, reads there: they are ignored; build both programs from one version",
+                membership.url,
+                components(&membership.readers(topic))
             ),
         ),
         News::Lost { name, topic, count, .. } => (

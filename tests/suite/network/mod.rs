@@ -28,6 +28,7 @@ mod state;
 mod tls;
 mod together;
 mod twice;
+mod versions;
 
 use std::sync::Arc;
 use std::time::Duration;

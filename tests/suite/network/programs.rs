@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::net::TcpListener;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -140,13 +140,19 @@ impl Programs {
         components: &str,
         configure: impl FnOnce(&mut Command),
     ) -> Arc<Program> {
+        let file = self.write_composite(name, components);
+        self.run_with(name, &["run", &file], configure)
+    }
+
+    /// Writes a composite of these components. Gives its file.
+    pub(super) fn write_composite(&self, name: &str, components: &str) -> String {
         let composite = format!(
             "<composite xmlns=\"http://www.osoa.org/xmlns/sca/1.0\" targetNamespace=\"http://launch\" \
              name=\"{name}\">\n{components}</composite>\n"
         );
         let file = format!("{name}.composite");
         self.write(&file, &composite);
-        self.run_with(name, &["run", &file], configure)
+        file
     }
 
     /// Writes a file that programs can name.
@@ -164,12 +170,25 @@ impl Programs {
         saoms_in(self.folder.path(), arguments)
     }
 
+    /// The socket at which operators reach a program.
+    pub(super) fn socket(&self, program: &Program) -> PathBuf {
+        let sockets = fs::read_dir(self.folder.path().join("saoms")).unwrap();
+        let end = format!("-{}.sock", program.pid());
+        sockets.map(|entry| entry.unwrap().path()).find(|path| path.to_string_lossy().ends_with(&end)).unwrap()
+    }
+
     /// Starts a program with these arguments.
     pub(super) fn run(&self, name: &str, arguments: &[&str]) -> Arc<Program> {
         self.run_with(name, arguments, |_| {})
     }
 
-    fn run_with(&self, name: &str, arguments: &[&str], configure: impl FnOnce(&mut Command)) -> Arc<Program> {
+    /// The same, with more for its command.
+    pub(super) fn run_with(
+        &self,
+        name: &str,
+        arguments: &[&str],
+        configure: impl FnOnce(&mut Command),
+    ) -> Arc<Program> {
         let mut run = command(&[arguments, &["--grace", "10s"]].concat());
         run.current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
         let transport = library(if self.transport == Transport::Relay { "saoms_relay" } else { "saoms_zenoh" });

@@ -158,8 +158,8 @@ pub enum News {
     Twice { component: Arc<str>, program: u64, name: Arc<str> },
     /// A component begins anew in another program; so many of its messages came from the one before.
     Anew { component: Arc<str>, program: u64, name: Arc<str>, after: u64 },
-    /// A program sends messages of another schema on a topic, which are ignored.
-    Differs { program: u64, name: Arc<str>, topic: Arc<str> },
+    /// A program sends messages of another schema on a topic, which are ignored; its component that was heard first.
+    Differs { program: u64, name: Arc<str>, component: Arc<str>, topic: Arc<str> },
     /// So many events of this program on a topic were forgotten before all had received them.
     Overflow { topic: Arc<str>, count: u64 },
 }

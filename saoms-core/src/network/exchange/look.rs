@@ -181,9 +181,12 @@ impl Exchange {
         let Some((topic, own)) = self.reads.get_key_value(topic.as_str()) else { return false };
         let (topic, expected) = (Arc::clone(topic), own.schema);
         let Some(peer) = self.peers.get_mut(&program).filter(|_| last <= LARGEST_NUMBER) else { return false };
-        if schema != expected && !messages.is_empty() && peer.differing.insert(Arc::clone(&topic)) {
-            let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
-            self.actions.push(Action::Tell(News::Differs { program, name, topic }));
+        if schema != expected
+            && let Some(first) = messages.first()
+            && peer.differing.insert(Arc::clone(&topic))
+        {
+            let (name, component) = (Arc::clone(&peer.name), first.component.as_str().into());
+            self.actions.push(Action::Tell(News::Differs { program, name, component, topic: Arc::clone(&topic) }));
         }
         let Some(incoming) = peer.incoming.get_mut(&topic).filter(|incoming| incoming.around.is_some()) else {
             return false;

@@ -240,9 +240,12 @@ impl Exchange {
             incoming.is_by_cells = true;
             incoming.around = own.cells.as_ref().map(look::read);
         }
-        if schema != own.schema && peer.differing.insert(Arc::clone(&topic)) {
-            let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
-            self.actions.push(Action::Tell(News::Differs { program, name, topic }));
+        if schema != own.schema
+            && let Some((_, Arrived { component, .. })) = messages.first()
+            && peer.differing.insert(Arc::clone(&topic))
+        {
+            let (name, component, topic) = (Arc::clone(&peer.name), Arc::clone(component), Arc::clone(&topic));
+            self.actions.push(Action::Tell(News::Differs { program, name, component, topic }));
         }
         let mut ready = Vec::with_capacity(messages.len());
         for (number, arrived) in messages {

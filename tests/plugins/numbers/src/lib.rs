@@ -13,6 +13,9 @@ pub struct Number {
     /// From 1.
     number: u32,
     filler: String,
+    /// Another form of it.
+    #[cfg(feature = "other")]
+    more: u32,
 }
 
 /// A reader that is there.
@@ -74,7 +77,11 @@ impl Component for Sender {
             for _ in 0..self.each.min(self.count - self.sent) {
                 self.sent += 1;
                 let (sender, filler) = (context.name().to_owned(), "x".repeat(self.size as usize));
-                context.send(&self.numbers, Number { sender, number: self.sent, filler })?;
+                #[cfg(feature = "other")]
+                let event = Number { sender, number: self.sent, filler, more: 0 };
+                #[cfg(not(feature = "other"))]
+                let event = Number { sender, number: self.sent, filler };
+                context.send(&self.numbers, event)?;
             }
             if self.sent == self.count {
                 context.info(format!("has sent 1 to {}", self.sent));
@@ -133,7 +140,7 @@ impl Component for Reader {
         if context.execution() == 0 {
             context.send(&self.present, Present { reader: context.name().to_owned() })?;
         }
-        for Number { sender, number, filler } in context.receive(&self.numbers) {
+        for Number { sender, number, filler, .. } in context.receive(&self.numbers) {
             if self.before.get(sender).is_some_and(|before| number <= before) {
                 context.info(format!("receives {number} of {sender} again"));
                 continue;

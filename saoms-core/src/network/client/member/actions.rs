@@ -51,7 +51,7 @@ impl<F: Fleet> Member<F> {
                     {
                         introduce(session, self.exchange.settings(), *program);
                     }
-                    let (level, text) = told(&news);
+                    let (level, text) = told(&news, &self.membership, &self.name);
                     if news.lost() > 0 {
                         self.fleet.count_lost(news.lost(), &text);
                     }

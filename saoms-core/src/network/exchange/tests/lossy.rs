@@ -381,7 +381,9 @@ impl Lossy {
                         News::Later { name, topic, count } => format!("Later {name} {topic} {count}"),
                         News::Twice { component, program, .. } => format!("Twice {component} {program}"),
                         News::Anew { component, program, after, .. } => format!("Anew {component} {program} {after}"),
-                        News::Differs { program, topic, .. } => format!("Differs {program} {topic}"),
+                        News::Differs { program, component, topic, .. } => {
+                            format!("Differs {program} {component} {topic}")
+                        }
                         News::Overflow { topic, count } => format!("Overflow {topic} {count}"),
                     };
                     self.programs[program].told.push(line);

@@ -168,7 +168,7 @@ fn messages_of_another_schema_are_told_once_and_do_not_count() {
     network.run(2_000 * MILLISECOND);
     assert_eq!(events(&network, "EVENTS"), Heard::new());
     let told: Vec<String> = network.told(1).into_iter().filter(|line| line.starts_with("Differs")).collect();
-    assert_eq!(told, ["Differs 0 EVENTS"]);
+    assert_eq!(told, ["Differs 0 Robot0 EVENTS"]);
     assert!(network.programs[0].exchange.is_complete(), "nothing is kept for who does not want it");
 }
 
