@@ -1,28 +1,34 @@
 //! Networks whose transport is not there.
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
 use super::programs::{Program, Programs, Transport, component, on_network};
 use crate::boundary::build;
+use crate::plugins::library;
 use crate::support::PROGRAM;
 
 /// The command where no library is beside it, with a composite of these components.
 fn alone(programs: &Programs, name: &str, components: &str) -> Arc<Program> {
+    alone_with(programs, name, components, &[])
+}
+
+/// The same, with these libraries beside that of the components.
+fn alone_with(programs: &Programs, name: &str, components: &str, libraries: &[&Path]) -> Arc<Program> {
     let folder = programs.folder().join("bin");
     fs::create_dir_all(&folder).unwrap();
     let copied = folder.join("saoms");
     if !copied.exists() {
         fs::copy(PROGRAM, &copied).unwrap();
     }
-    let composite = format!(
-        "<composite xmlns=\"http://www.osoa.org/xmlns/sca/1.0\" targetNamespace=\"http://launch\" \
-         name=\"{name}\">\n{components}</composite>\n"
-    );
-    programs.write(&format!("{name}.composite"), &composite);
+    let file = programs.write_composite(name, components);
     let mut run = Command::new(copied);
-    run.args(["run", &format!("{name}.composite"), "--control", "none", "--plugin"]).arg(build::library("numbers"));
+    run.args(["run", &file, "--control", "none", "--plugin"]).arg(build::library("numbers"));
+    for library in libraries {
+        run.arg("--plugin").arg(library);
+    }
     programs.other(name, run)
 }
 
@@ -51,8 +57,61 @@ fn a_missing_library_is_told_with_how_to_get_it() {
     let program = alone(&programs, "tasks", &on_network(&url, &[], &sender));
     programs.ends(&program, 2);
     let printed = program.printed();
-    let how = "`cargo build --release -p saoms-zenoh` makes the one for `host:port` and `tls://`, `libsaoms_zenoh.so`";
-    for text in ["error[S4031]", "there is no transport for urls such as `host:port`", how, "--> tasks.composite:2:"] {
+    // Where the command looks, which is not where it is built.
+    let how = format!(
+        "`cargo build --release -p saoms-zenoh` makes the one for `host:port` and `tls://`, `libsaoms_zenoh.so`, in \
+         `target/release`; copy it to `{}`, or name it with `--plugin`",
+        programs.folder().canonicalize().unwrap().join("lib/saoms").display()
+    );
+    for text in ["error[S4031]", "there is no transport for urls such as `host:port`", &how, "--> tasks.composite:2:"] {
+        assert!(printed.contains(text), "{text}\n{printed}");
+    }
+}
+
+/// As packages have it: the command in `bin`, and the library in `lib/saoms`.
+#[test]
+fn a_library_is_found_where_packages_have_it() {
+    let programs = Programs::over(Transport::Zenoh);
+    let folder = programs.folder().join("lib/saoms");
+    fs::create_dir_all(&folder).unwrap();
+    fs::copy(library("saoms_zenoh"), folder.join("libsaoms_zenoh.so")).unwrap();
+    let (url, port) = (programs.url(programs.port), programs.port.to_string());
+    let address = [("IP", "127.0.0.1"), ("port", &*port)];
+    let broker = alone(&programs, "broker", &component("Broker", "saoms.MessageBroker", &address));
+    programs.until(&broker, &format!("the program listens at `{url}`"));
+    let reader = [("Reader", "numbers.Reader", &[("count", "10")][..])];
+    let reader = alone(&programs, "reader", &on_network(&url, &[], &reader));
+    let sender = [("Sender1", "numbers.Sender", &[("count", "10"), ("each", "1")][..])];
+    let sender = alone(&programs, "sender", &on_network(&url, &[], &sender));
+    programs.until(&reader, "has received 1 to 10 of Sender1");
+    for program in [&reader, &sender] {
+        programs.ends(program, 0);
+    }
+    programs.end(&broker);
+}
+
+#[test]
+fn a_library_of_another_version_of_the_boundary_is_told() {
+    let programs = Programs::new();
+    let bytes = fs::read(library("saoms_relay")).unwrap();
+    let (own, other) = (b"{\"saoms\":\"transport\",\"abi\":1,", b"{\"saoms\":\"transport\",\"abi\":9,");
+    let places: Vec<usize> =
+        bytes.windows(own.len()).enumerate().filter(|(_, part)| part == own).map(|it| it.0).collect();
+    assert!(!places.is_empty());
+    let mut changed = bytes;
+    places.iter().for_each(|place| changed[*place..][..other.len()].copy_from_slice(other));
+    let path = programs.folder().join("libother.so");
+    fs::write(&path, changed).unwrap();
+    let sender = [("Sender1", "numbers.Sender", &[("count", "10"), ("each", "1")][..])];
+    let url = programs.url(programs.port);
+    let program = alone_with(&programs, "tasks", &on_network(&url, &[], &sender), &[&path]);
+    programs.ends(&program, 2);
+    let printed = program.printed();
+    let said = format!(
+        "transport `{}` was built for version 9 of the boundary, this program has version 1: build it again",
+        path.display()
+    );
+    for text in ["error[S4031]", &said, "--> tasks.composite:2:"] {
         assert!(printed.contains(text), "{text}\n{printed}");
     }
 }

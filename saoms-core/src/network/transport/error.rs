@@ -8,7 +8,7 @@ use crate::plugin::PluginError;
 #[expect(missing_docs, reason = "each field is named in the message of its variant")]
 pub enum TransportError {
     /// No library serves urls of this scheme.
-    Missing { scheme: String, searched: Vec<PathBuf>, known: Vec<String> },
+    Missing { scheme: String, searched: Vec<PathBuf>, known: Vec<String>, installed: Option<PathBuf> },
     /// The library cannot be read or loaded.
     Library(PluginError),
     /// Its metadata are not what they should be.
@@ -20,7 +20,7 @@ pub enum TransportError {
 impl fmt::Display for TransportError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            TransportError::Missing { scheme, searched, known } => {
+            TransportError::Missing { scheme, searched, known, installed } => {
                 match scheme.as_str() {
                     "" => out.write_str("there is no transport for urls such as `host:port`")?,
                     scheme => write!(out, "there is no transport for urls with `{scheme}://`")?,
@@ -29,12 +29,14 @@ impl fmt::Display for TransportError {
                     write!(out, "; those that were found serve {}", known.join(", "))?;
                 }
                 let folders: Vec<String> = searched.iter().map(|path| format!("`{}`", path.display())).collect();
-                write!(
-                    out,
+                out.write_str(
                     ": `cargo build --release -p saoms-zenoh` makes the one for `host:port` and `tls://`, \
-                     `libsaoms_zenoh.so`; searched in {}",
-                    folders.join(", ")
-                )
+                     `libsaoms_zenoh.so`, in `target/release`",
+                )?;
+                if let Some(installed) = installed {
+                    write!(out, "; copy it to `{}`, or name it with `--plugin`", installed.display())?;
+                }
+                write!(out, "; searched in {}", folders.join(", "))
             }
             TransportError::Library(error) => error.fmt(out),
             TransportError::Metadata { path, message } => {

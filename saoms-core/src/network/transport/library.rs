@@ -70,7 +70,8 @@ impl Transport {
                     .map(|one| if one.is_empty() { "`host:port`".to_owned() } else { format!("`{one}://`") }),
             );
         }
-        Err(TransportError::Missing { scheme: scheme.to_owned(), searched, known: known.into_iter().collect() })
+        let (scheme, known) = (scheme.to_owned(), known.into_iter().collect());
+        Err(TransportError::Missing { scheme, searched, known, installed: beside_the_program().pop() })
     }
 
     fn load(path: &Path, info: &TransportInfo) -> Result<Transport, TransportError> {
@@ -116,13 +117,13 @@ impl TransportInfo {
     }
 }
 
-/// The folder of the program, and that of libraries beside it as packages have them.
+/// The folder of the program, and that of libraries beside it as packages have them: `bin` and `lib/saoms`.
 fn beside_the_program() -> Vec<PathBuf> {
     let Some(folder) = env::current_exe().ok().and_then(|program| Some(program.parent()?.to_owned())) else {
         return Vec::new();
     };
-    let installed = folder.join("../lib/saoms");
-    [folder, installed].into_iter().collect()
+    let installed = folder.parent().map(|above| above.join("lib/saoms"));
+    std::iter::once(folder).chain(installed).collect()
 }
 
 /// The libraries of a place: a folder, or a library itself.
