@@ -28,16 +28,15 @@ fn lost(programs: &Programs, name: &str) -> u64 {
     count
 }
 
-/// The metrics of a program.
-fn metrics(programs: &Programs, program: &Program) -> String {
-    let sockets = std::fs::read_dir(programs.folder().join("saoms")).unwrap();
-    let end = format!("-{}.sock", program.pid());
-    let socket = sockets.map(|entry| entry.unwrap().path()).find(|path| path.to_string_lossy().ends_with(&end));
-    let mut stream = UnixStream::connect(socket.unwrap()).unwrap();
+/// The number of lost messages in the metrics of a program.
+fn counted(programs: &Programs, program: &Program) -> f64 {
+    let mut stream = UnixStream::connect(programs.socket(program)).unwrap();
     stream.write_all(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").unwrap();
     let mut answer = String::new();
     stream.read_to_string(&mut answer).unwrap();
-    answer
+    let counter = format!("saoms_network_lost_total{{network=\"{}\"}} ", programs.url(programs.port));
+    let count = answer.lines().find_map(|line| line.strip_prefix(&counter)?.parse().ok());
+    count.unwrap_or_else(|| panic!("{answer}"))
 }
 
 #[test]
@@ -53,17 +52,17 @@ fn events_beyond_the_memory_for_them_are_counted_at_both_ends_and_fail_the_runs(
     reader.signal(libc::SIGSTOP);
     programs.until(&sender, "program `reader` was away for so long that no more events are kept for it");
     programs.until(&sender, "has sent 1 to 2000");
-    let url = programs.url(programs.port);
-    let counted = format!("saoms_network_lost_total{{network=\"{url}\"}} ");
-    let answer = metrics(&programs, &sender);
-    let metric: f64 = answer.lines().find_map(|line| line.strip_prefix(&counted)?.parse().ok()).unwrap_or_default();
-    assert!(metric > 0.0, "{answer}");
     reader.signal(libc::SIGCONT);
     programs.until(&reader, "are lost: it does not have them any more");
-    sender.signal(libc::SIGINT);
-    programs.ends(&sender, 130);
-    reader.signal(libc::SIGINT);
-    programs.ends(&reader, 130);
+    // An operator ends them: a signal would hide how they ended.
+    for (name, program) in [("sender", &sender), ("reader", &reader)] {
+        let before = counted(&programs, program);
+        let socket = programs.socket(program);
+        programs.saoms(&["down", "--fleet", socket.to_str().unwrap()]);
+        programs.ends(program, 1);
+        let count = lost(&programs, name);
+        assert!((1..=2000).contains(&count) && before > 0.0 && count as f64 >= before, "{name}: {before}, {count}");
+    }
     programs.end_without(&broker, &["panicked"]);
 }
 
