@@ -24,11 +24,11 @@ fn walkers_hear_who_is_near(transport: Transport) {
     programs.until(&near, "meets walks at");
     programs.until(&walks, "meets near at 10");
     programs.until(&near, "hears walks no more");
-    let before = proxy.bytes();
+    let before = proxy.received();
     programs.until(&far, "meets walks at");
     programs.until(&walks, "meets far at 100");
     // Meanwhile that one has said some five megabytes.
-    let bytes = proxy.bytes() - before;
+    let bytes = proxy.received() - before;
     assert!(bytes < 1_000_000, "{bytes}\n{}", programs.printed());
     for program in [&near, &far] {
         let printed = program.printed();

@@ -30,8 +30,9 @@ struct Shared {
     /// Whether the present connections are dead.
     are_dead: Mutex<Arc<AtomicBool>>,
     is_over: AtomicBool,
-    /// Bytes that came from the far end.
-    bytes: Arc<AtomicU64>,
+    /// Bytes that came from the far end, and from the near one.
+    received: Arc<AtomicU64>,
+    sent: Arc<AtomicU64>,
 }
 
 impl Proxy {
@@ -53,16 +54,22 @@ impl Proxy {
                     of_thread.streams.lock().unwrap().push(stream.try_clone().unwrap());
                 }
                 let is_dead = Arc::clone(&of_thread.are_dead.lock().unwrap());
-                carry(near.try_clone().unwrap(), far.try_clone().unwrap(), line, Arc::clone(&is_dead), Arc::default());
-                carry(far, near, line, is_dead, Arc::clone(&of_thread.bytes));
+                let (from, to) = (near.try_clone().unwrap(), far.try_clone().unwrap());
+                carry(from, to, line, Arc::clone(&is_dead), Arc::clone(&of_thread.sent));
+                carry(far, near, line, is_dead, Arc::clone(&of_thread.received));
             }
         });
         Proxy { port: own, shared }
     }
 
     /// Bytes that came from the program that it leads to.
-    pub(super) fn bytes(&self) -> u64 {
-        self.shared.bytes.load(Ordering::SeqCst)
+    pub(super) fn received(&self) -> u64 {
+        self.shared.received.load(Ordering::SeqCst)
+    }
+
+    /// Bytes that went to that program.
+    pub(super) fn sent(&self) -> u64 {
+        self.shared.sent.load(Ordering::SeqCst)
     }
 
     /// Ends all connections.
