@@ -87,58 +87,70 @@ fn programs_that_stop_for_seconds_miss_nothing_and_nothing_of_them_is_missed() {
 /// It has room for less than what is sent while it executes once.
 #[test]
 fn a_reader_that_is_slower_than_the_senders_receives_all_in_order() {
-    let programs = Programs::new();
-    let broker = programs.broker();
-    let slow = [("count", MANY), ("senders", "2"), ("queue", "1500")];
-    let reader = programs.tasks("reader", programs.port, &[("Reader", "numbers.Reader", &slow)]);
-    let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
-    receives_all(&programs, &reader, MANY);
-    programs.ends(&senders, 0);
-    took_little_memory(&programs);
-    programs.end(&broker);
+    let trial = |transport| {
+        let programs = Programs::over(transport);
+        let broker = programs.broker();
+        let slow = [("count", MANY), ("senders", "2"), ("queue", "1500")];
+        let reader = programs.tasks("reader", programs.port, &[("Reader", "numbers.Reader", &slow)]);
+        let senders = senders(&programs, programs.port, &[("count", MANY), ("each", "1000")]);
+        receives_all(&programs, &reader, MANY);
+        programs.ends(&senders, 0);
+        took_little_memory(&programs);
+        programs.end(&broker);
+    };
+    beside_each_other(&[&|| trial(Transport::Relay), &|| trial(Transport::Zenoh)]);
 }
 
 #[test]
 fn others_go_on_without_a_reader_that_is_killed() {
-    let programs = Programs::new();
-    let broker = programs.broker();
-    let stays = reader(&programs, "stays", programs.port, &[("count", "4000")]);
-    let dies = reader(&programs, "dies", programs.port, &[("count", "4000")]);
-    let given = [("count", "4000"), ("each", "200"), ("readers", "2")];
-    let tasks = [("Sender1", "numbers.Sender", &given[..]), ("Sender2", "numbers.Sender", &given)];
-    let tasks = on_network(&programs.url(programs.port), &[], &tasks);
-    let senders = programs.start_with("senders", &tasks, |run| {
-        run.args(["--linger", "3s"]);
-    });
-    programs.until(&senders, "Sender2        begins");
-    sleep(Duration::from_millis(500));
-    dies.kill();
-    receives_all(&programs, &stays, "4000");
-    // One that wanted them has not received all.
-    programs.ends(&senders, 1);
-    assert!(senders.printed().contains("program `dies` has not received"), "{}", senders.printed());
-    programs.end(&broker);
+    let trial = |transport| {
+        let programs = Programs::over(transport);
+        let broker = programs.broker();
+        let stays = reader(&programs, "stays", programs.port, &[("count", MANY)]);
+        let dies = reader(&programs, "dies", programs.port, &[("count", MANY)]);
+        let given = [("count", MANY), ("each", "1000"), ("readers", "2")];
+        let tasks = [("Sender1", "numbers.Sender", &given[..]), ("Sender2", "numbers.Sender", &given)];
+        let tasks = on_network(&programs.url(programs.port), &[], &tasks);
+        let senders = programs.start_with("senders", &tasks, |run| {
+            run.args(["--linger", "3s"]);
+        });
+        programs.until(&senders, "Sender2        begins");
+        sleep(Duration::from_millis(500));
+        dies.kill();
+        receives_all(&programs, &stays, MANY);
+        // One that wanted them has not received all.
+        programs.ends(&senders, 1);
+        assert!(senders.printed().contains("program `dies` has not received"), "{}", senders.printed());
+        took_little_memory(&programs);
+        programs.end(&broker);
+    };
+    beside_each_other(&[&|| trial(Transport::Relay), &|| trial(Transport::Zenoh)]);
 }
 
 /// As a service manager does it.
 #[test]
 fn a_program_that_is_killed_and_started_again_at_once_is_heard_from_its_first_event() {
-    let programs = Programs::new();
-    let broker = programs.broker();
-    let reader = reader(&programs, "reader", programs.port, &[("count", "2000")]);
-    let given = [("count", "2000"), ("each", "50")];
-    let first = senders(&programs, programs.port, &given);
-    programs.until(&first, "Sender2        begins");
-    sleep(Duration::from_millis(500));
-    first.kill();
-    let second = senders(&programs, programs.port, &given);
-    receives_all(&programs, &reader, "2000");
-    programs.ends(&second, 0);
-    let wrong: Vec<String> =
-        reader.printed().lines().filter_map(|line| Some(line.split_once("wrong: ")?.1.to_owned())).collect();
-    let is_first = |sender: u32| wrong.iter().any(|line| line.starts_with(&format!("received 1 of Sender{sender},")));
-    assert!(wrong.len() == 2 && is_first(1) && is_first(2), "{wrong:?}\n{}", programs.printed());
-    programs.end_without(&broker, &["panicked", "are lost", "runs in program"]);
+    let trial = |transport| {
+        let programs = Programs::over(transport);
+        let broker = programs.broker();
+        let reader = reader(&programs, "reader", programs.port, &[("count", MANY)]);
+        let given = [("count", MANY), ("each", "1000")];
+        let first = senders(&programs, programs.port, &given);
+        programs.until(&first, "Sender2        begins");
+        sleep(Duration::from_millis(500));
+        first.kill();
+        let second = senders(&programs, programs.port, &given);
+        receives_all(&programs, &reader, MANY);
+        programs.ends(&second, 0);
+        let printed = reader.printed();
+        let wrong: Vec<&str> = printed.lines().filter_map(|line| Some(line.split_once("wrong: ")?.1)).collect();
+        let is_first =
+            |sender: u32| wrong.iter().any(|line| line.starts_with(&format!("received 1 of Sender{sender},")));
+        assert!(wrong.len() == 2 && is_first(1) && is_first(2), "{wrong:?}\n{}", programs.printed());
+        took_little_memory(&programs);
+        programs.end_without(&broker, &["panicked", "are lost", "runs in program"]);
+    };
+    beside_each_other(&[&|| trial(Transport::Relay), &|| trial(Transport::Zenoh)]);
 }
 
 #[test]

@@ -3,16 +3,16 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::programs::Programs;
+use super::programs::{Programs, Transport};
 use super::proxy::{Line, Proxy};
 use super::{MANY, beside_each_other, reader, receives_all, senders, took_little_memory};
 
 /// All events arrive over the proxy, to which this happens while they are sent: with the reader behind it, and with the
-/// senders. Some program says this then.
+/// senders, over each transport. Some program says this then.
 #[track_caller]
 fn all_arrive(line: Line, count: &str, each: &str, happens: impl Fn(&Proxy) + Sync, said: &str) {
-    let trial = |is_reader_behind: bool| {
-        let programs = Programs::new();
+    let trial = |transport, is_reader_behind: bool| {
+        let programs = Programs::over(transport);
         let broker = programs.broker();
         programs.until(&broker, "listens at");
         let proxy = Proxy::to(programs.port, line);
@@ -27,12 +27,18 @@ fn all_arrive(line: Line, count: &str, each: &str, happens: impl Fn(&Proxy) + Sy
         took_little_memory(&programs);
         assert!(programs.printed().contains(said), "{}", programs.printed());
     };
-    beside_each_other(&[&|| trial(true), &|| trial(false)]);
+    beside_each_other(&[
+        &|| trial(Transport::Relay, true),
+        &|| trial(Transport::Relay, false),
+        &|| trial(Transport::Zenoh, true),
+        &|| trial(Transport::Zenoh, false),
+    ]);
 }
 
 #[test]
 fn events_arrive_over_a_slow_line() {
-    let line = Line { delay: Duration::from_millis(100), few: 0 };
+    // Each way: an answer takes twice as long.
+    let line = Line { delay: Duration::from_millis(200), few: 0 };
     all_arrive(line, MANY, "1000", |_| {}, "");
 }
 

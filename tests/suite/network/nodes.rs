@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+use super::beside_each_other;
 use super::programs::{Program, Programs, Transport, component, free_port};
 use crate::support::{root, saoms, stdout, text};
 
@@ -95,24 +96,29 @@ pub(super) fn at_node(node: &str, component: String) -> String {
 /// Robots that are in another program than the world that they move in.
 #[test]
 fn the_airport_runs_in_four_programs() {
-    let programs = Programs::new();
-    let airport = fs::read_to_string(root().join("composites/airport-nodes.composite")).unwrap();
-    let together = "saoms:node=\"floor\" saoms:count";
-    assert!(airport.contains(together));
-    programs.write("airport.composite", &airport.replace(together, "saoms:node=\"robots\" saoms:count"));
-    let (port, url) = (format!("port={}", programs.port), format!("url={}", programs.url(programs.port)));
-    let given = ["--set", "host=127.0.0.1", "--set", &port, "--set", &url, "--set", "transport=relay"];
-    let all = ["robots", "floor", "traffic", "control"].map(|node| start(&programs, "airport.composite", node, &given));
-    for program in &all {
-        programs.ends(program, 0);
-    }
-    let floor = report(&programs, "floor");
-    assert_eq!(floor["luggage"]["delivered"], 9, "{}", programs.printed());
-    assert_eq!((&floor["collisions"]["vertex"], &floor["collisions"]["swap"]), (&0.into(), &0.into()));
-    let printed = all[0].printed();
-    for luggage in 1..=9 {
-        assert_eq!(printed.matches(&format!("deposited luggage {luggage} at")).count(), 1, "{printed}");
-    }
+    let trial = |transport, named: &str| {
+        let programs = Programs::over(transport);
+        let airport = fs::read_to_string(root().join("composites/airport-nodes.composite")).unwrap();
+        let together = "saoms:node=\"floor\" saoms:count";
+        assert!(airport.contains(together));
+        programs.write("airport.composite", &airport.replace(together, "saoms:node=\"robots\" saoms:count"));
+        let (port, url) = (format!("port={}", programs.port), format!("url={}", programs.url(programs.port)));
+        let transport = format!("transport={named}");
+        let given = ["--set", "host=127.0.0.1", "--set", &port, "--set", &url, "--set", &transport];
+        let nodes = ["robots", "floor", "traffic", "control"];
+        let all = nodes.map(|node| start(&programs, "airport.composite", node, &given));
+        for program in &all {
+            programs.ends(program, 0);
+        }
+        let floor = report(&programs, "floor");
+        assert_eq!(floor["luggage"]["delivered"], 9, "{}", programs.printed());
+        assert_eq!((&floor["collisions"]["vertex"], &floor["collisions"]["swap"]), (&0.into(), &0.into()));
+        let printed = all[0].printed();
+        for luggage in 1..=9 {
+            assert_eq!(printed.matches(&format!("deposited luggage {luggage} at")).count(), 1, "{printed}");
+        }
+    };
+    beside_each_other(&[&|| trial(Transport::Relay, "relay"), &|| trial(Transport::Zenoh, "")]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::nodes::{at_node, start};
 use super::programs::{Program, Programs, Transport, component};
+use super::{MANY, took_little_memory};
 use crate::support::stdout;
 
 /// Pieces of luggage, and robots in each of the two programs.
@@ -29,6 +30,12 @@ fn write(programs: &Programs) {
         + &at_node("router", component("Broker", "unibg.robotics.tca.MessageBrokerImpl", &broker))
         + &at_node("traffic", task("Zone", "saoms.Zone", &[("map", &map)]))
         + &at_node("traffic", task("World", "saoms.World", &[("width", "11"), ("height", "11")]));
+    // Numbered events of two programs, of which a third one misses none.
+    let numbers = [("count", MANY), ("each", "200")];
+    components += &task("Sender1", "numbers.Sender", &numbers);
+    components += &at_node("gate-a", task("Sender2", "numbers.Sender", &numbers));
+    let reader = [("count", MANY), ("senders", "2"), ("queue", "200000")];
+    components += &at_node("gate-b", task("Reader", "numbers.Reader", &reader));
     for robot in 1..=2 * ROBOTS {
         let name = format!("Robot{robot}");
         let one = task(&name, "saoms.Robot", &[("dischargePerBlock", "1"), ("chargePerSecond", "10")]);
@@ -57,6 +64,9 @@ fn each_piece_is_delivered_once_although_the_router_is_started_again_twice() {
             printed.matches("deposited luggage").count()
         };
         programs.wait("luggage is delivered", || deposited() >= delivered as usize);
+        // They are under way.
+        let has_sent = [&all[0], &all[2]].iter().any(|program| program.printed().contains("has sent 1 to"));
+        assert!(!has_sent, "{}", programs.printed());
         router.kill();
         sleep(Duration::from_secs(3));
         router = node("router");
@@ -73,7 +83,12 @@ fn each_piece_is_delivered_once_although_the_router_is_started_again_twice() {
             assert_eq!(found, 1, "luggage {piece} is {what} {found} times\n{printed}");
         }
     }
-    for sign in ["panicked", "are lost", "which was granted to"] {
+    for sender in ["Sender1", "Sender2"] {
+        let received = format!("has received 1 to {MANY} of {sender}");
+        assert_eq!(all[3].printed().matches(&received).count(), 1, "{received}\n{printed}");
+    }
+    took_little_memory(&programs);
+    for sign in ["panicked", "are lost", "which was granted to", "wrong:"] {
         assert!(!printed.contains(sign), "{sign}\n{printed}");
     }
     let files = ["control.json", "traffic.json", "gate-a.json", "gate-b.json"];
