@@ -63,8 +63,10 @@ pub struct TransportTable {
     /// `certificate` or `key`) and `text`, what is wrong and what to do. Nothing, or an empty list: all can.
     pub judge: unsafe extern "C" fn(settings: Bytes, faults: Sink) -> Status,
     /// Sends a message, with what the program says beside it, to all sessions of the network that subscribe to its
-    /// key, but not to this one. Must not wait. `FULL`: too much waits to be sent; the program keeps the message and
-    /// tries again. `urgent` is 1 for the few short messages, such as signs of life, that should overtake others.
+    /// key, but not to this one. Must not wait for another program, nor for room: a millisecond is the most that it
+    /// may take for that, as in the transport over Zenoh. `FULL`: too much waits to be sent; the program keeps the
+    /// message and tries again. `urgent` is 1 for the few short messages, such as signs of life, that should overtake
+    /// others.
     pub put: unsafe extern "C" fn(
         session: *mut c_void,
         key: Bytes,
@@ -95,8 +97,10 @@ pub struct TransportEvents {
     pub size: usize,
     /// The program's own; the first argument of each function.
     pub state: *mut c_void,
-    /// Delivers a message of a subscription. `FULL`: the program cannot take it now. The session delivers it again,
-    /// after it has waited or stopped to read; one that cannot wait drops it.
+    /// Delivers a message of a subscription. `FULL`: the program cannot take it now. A session whose thread reads one
+    /// connection alone reads no more of that, and delivers the message again after a millisecond, until it is taken or
+    /// the session is closed: so its senders slow down, and nothing has to be sent again. One whose thread serves other
+    /// connections, too, drops it, as that of Zenoh: the program asks for it again.
     pub deliver:
         unsafe extern "C" fn(state: *mut c_void, token: u64, key: Bytes, message: Bytes, attachment: Bytes) -> Status,
     /// Tells that the link to the network was lost (0) or is there again (1), with a reason for people.

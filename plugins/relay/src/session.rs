@@ -20,6 +20,8 @@ use crate::frame::{Frame, LONGEST, fits};
 const MOST_WAITING: usize = 64 << 20;
 /// Pause before the relay is looked for again.
 const PAUSE: Duration = Duration::from_millis(200);
+/// Pause before a message is offered again for which the program had no room.
+const ROOM_AGAIN: Duration = Duration::from_millis(1);
 /// Longest time for an attempt to connect.
 const PATIENCE: Duration = Duration::from_millis(900);
 /// Time that the other ends have to take what waits for them when a session is closed.
@@ -222,7 +224,6 @@ impl Shared {
         while let Ok(frame) = Frame::read(&mut reader) {
             match frame {
                 Frame::Put { ref key, ref message, ref attachment } => {
-                    self.deliver(key, message, attachment);
                     if self.is_relay {
                         let links = lock(&self.links).clone();
                         links
@@ -230,6 +231,7 @@ impl Shared {
                             .filter(|other| !Arc::ptr_eq(other, &link))
                             .for_each(|other| other.send(key, &frame, true));
                     }
+                    self.deliver(key, message, attachment);
                 }
                 Frame::Subscribe { keys } => lock(&link.wanted).push(keys),
                 Frame::Unsubscribe { keys } => {
@@ -252,17 +254,25 @@ impl Shared {
         }
     }
 
+    /// Delivers a message to the program. As long as that has no room for it, nothing more is read of the connection,
+    /// so that who sends on it slows down.
     fn deliver(&self, key: &str, message: &[u8], attachment: &[u8]) {
         let tokens: Vec<u64> =
             lock(&self.own).iter().filter(|(_, keys)| fits(key, keys)).map(|(token, _)| *token).collect();
-        let events = self.events.read().unwrap_or_else(PoisonError::into_inner);
-        let Some(Program(events)) = *events else { return };
         for token in tokens {
-            let (key, message, attachment) = (Bytes::text(key), Bytes::lend(message), Bytes::lend(attachment));
-            // SAFETY: the session is open, so that the state is valid; the bytes live until the call returns. What the
-            // program has no room for is dropped: a message that somebody lacks is sent again.
-            let _: Status = unsafe { (events.deliver)(events.state, token, key, message, attachment) };
+            while self.offer(token, key, message, attachment) == Status::FULL {
+                thread::sleep(ROOM_AGAIN);
+            }
         }
+    }
+
+    /// Offers a message to the program, which wants none any more once the session is closed.
+    fn offer(&self, token: u64, key: &str, message: &[u8], attachment: &[u8]) -> Status {
+        let events = self.events.read().unwrap_or_else(PoisonError::into_inner);
+        let Some(Program(events)) = *events else { return Status::OK };
+        let (key, message, attachment) = (Bytes::text(key), Bytes::lend(message), Bytes::lend(attachment));
+        // SAFETY: the session is open, so that the state is valid; the bytes live until the call returns.
+        unsafe { (events.deliver)(events.state, token, key, message, attachment) }
     }
 
     fn tell(&self, is_up: bool, reason: &str) {

@@ -6,6 +6,7 @@ mod calls;
 mod certificates;
 mod errors;
 mod foreign;
+mod full;
 mod hardware;
 mod leases;
 mod library;
