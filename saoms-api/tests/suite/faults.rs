@@ -162,7 +162,7 @@ fn names_have_to_mean_something() {
     one_program.components.iter_mut().for_each(|one| one.node.clear());
     let line = "crash @floor";
     let judged = one_program.check(&FaultCall::read(line).unwrap());
-    let expected = "`@floor`: the fleet has no node `floor`; no component has a `saoms:node`";
+    let expected = "`@floor`: the fleet has no node `floor`; no component has a `saoms:node`, and no other composite is on a network";
     assert_eq!(shown(line, judged.map(|()| "right".to_owned())), expected);
     let unknown = FaultSubjects::default();
     assert_eq!(unknown.check(&FaultCall::read("crash Anything").unwrap()), Ok(()));

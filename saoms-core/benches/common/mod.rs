@@ -24,6 +24,7 @@ pub(crate) fn component(
         class: registry.get(class).map(Arc::clone).ok_or("the class is registered")?,
         site: Default::default(),
         node: Default::default(),
+        fault_node: Default::default(),
         values: values.iter().map(owned).collect(),
         written: Default::default(),
         task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),

@@ -49,6 +49,7 @@ fn assembly(text: &str) -> Assembly {
             path: words[0].to_owned(),
             site: Default::default(),
             node: Default::default(),
+            fault_node: Default::default(),
             task: class.declaration().is_periodic().then(|| {
                 let values = [("ID", words[0]), ("period", "10")];
                 let values = values.map(|(name, value)| (name.into(), PropertyValue::from(value)));

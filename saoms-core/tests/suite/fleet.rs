@@ -95,6 +95,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         class,
         site: Default::default(),
         node: Default::default(),
+        fault_node: Default::default(),
         library: None,
         values,
         written: Default::default(),

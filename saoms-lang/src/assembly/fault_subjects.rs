@@ -9,7 +9,7 @@ pub fn fault_subjects<'s>(specs: impl IntoIterator<Item = &'s ComponentSpec>) ->
     let mut subjects = FaultSubjects { is_complete: true, ..FaultSubjects::default() };
     for spec in specs {
         let own = spec.class.declaration();
-        let (path, node) = (spec.path.clone(), spec.node.to_string());
+        let (path, node) = (spec.path.clone(), spec.fault_node.to_string());
         subjects.components.push(SubjectComponent { path, node, is_periodic: own.is_periodic() });
         let loops = || spec.loops.iter().map(|one| one.class.declaration());
         for declared in own.publishes.iter().chain(loops().flat_map(|one| &one.publishes)) {

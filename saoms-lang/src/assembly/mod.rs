@@ -58,6 +58,9 @@ pub struct ComponentSpec {
     pub site: SmolStr,
     /// The node that runs it; empty in a fleet without nodes.
     pub node: SmolStr,
+    /// The node by which faults name it: the one above, or, in a fleet without nodes that several composites on a
+    /// network make, the name of the file of its own one; otherwise empty.
+    pub fault_node: SmolStr,
     /// The class.
     pub class: Arc<RegisteredClass>,
     /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute

@@ -14,6 +14,7 @@ use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::options::ENVIRONMENT;
+use crate::check::placement::fault_nodes::FaultNodes;
 use crate::check::properties::given_values::ValuePlace;
 use crate::check::run_settings;
 use crate::check::web::Web;
@@ -38,6 +39,7 @@ pub(crate) fn assemble(
     let first = fleet.contribution.asked_for().first().map(|first| Path::new(sources.get(first.file()).path()));
     let folder = first.and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
     let mut networks = NetworkPlaces { folder, ..NetworkPlaces::default() };
+    let fault_nodes = FaultNodes::of(fleet, &checks);
     for (place, check) in checks.into_iter().enumerate() {
         let member = &fleet.members[place];
         if !member.runs() {
@@ -86,6 +88,7 @@ pub(crate) fn assemble(
             path: member.path().to_owned(),
             site: member.site.clone(),
             node: member.node.clone(),
+            fault_node: fault_nodes.of_member(member),
             class: Arc::clone(class.class),
             library: classes::library(member.component, fleet.contribution, sources),
             values,

@@ -12,6 +12,7 @@ mod failing;
 mod invariants;
 mod machines;
 mod messages;
+mod networked;
 mod nodes;
 mod physics;
 mod shifts;

@@ -97,7 +97,7 @@ impl FaultSubjects {
             nodes.sort_unstable();
             nodes.dedup();
             return Err(match nodes.is_empty() {
-                true => fault.help("no component has a `saoms:node`"),
+                true => fault.help("no component has a `saoms:node`, and no other composite is on a network"),
                 false => near(fault, &name.text, nodes.iter().map(String::as_str)),
             });
         }

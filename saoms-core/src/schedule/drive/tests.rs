@@ -93,6 +93,7 @@ fn component(path: &str, registry: &Registry) -> ComponentSpec {
         path: path.to_owned(),
         site: Default::default(),
         node: Default::default(),
+        fault_node: Default::default(),
         class: Arc::clone(registry.get(path).unwrap()),
         library: None,
         values: Vec::new(),

@@ -17,7 +17,7 @@ use crate::schedule::networks::Networks;
 use crate::schedule::settings::nanos;
 
 fn end(number: u32, slot: &Slot) -> End<'_> {
-    End { number, path: &slot.name, site: &slot.spec.site, node: &slot.spec.node }
+    End { number, path: &slot.name, site: &slot.spec.site, node: &slot.spec.fault_node }
 }
 
 /// The same for one of this program or of another node.
@@ -26,13 +26,13 @@ fn any_end<'e>(slots: &'e [Slot], networks: &'e Networks, number: u32) -> Option
         return Some(end(number, slot));
     }
     let (spec, _) = networks.elsewhere.get(number)?;
-    Some(End { number, path: &spec.path, site: &spec.site, node: &spec.node })
+    Some(End { number, path: &spec.path, site: &spec.site, node: &spec.fault_node })
 }
 
 /// True if a fault of components of a site names this one; an empty site is all.
 fn is_named(spec: &ComponentSpec, call: &FaultCall, site: &str) -> bool {
     (site.is_empty() || spec.site == site)
-        && call.to.iter().any(|word| names_component(&word.text, &spec.path, &spec.node))
+        && call.to.iter().any(|word| names_component(&word.text, &spec.path, &spec.fault_node))
 }
 
 /// A component as observers of a fault hear of it.

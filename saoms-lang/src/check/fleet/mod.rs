@@ -125,6 +125,8 @@ pub(crate) struct Member<'a> {
     pub(crate) site: SmolStr,
     /// The node that runs it; empty where none is named.
     pub(crate) node: SmolStr,
+    /// The name of the program that would run its outermost composite alone; empty where no other one was asked for.
+    pub(crate) program: SmolStr,
     /// The fault of having the name of an earlier one.
     pub(crate) repeated: Option<Faulty>,
     /// Its path, where that is more than its name.

@@ -1,5 +1,6 @@
 //! Placement: which node runs which component, and what has to hold between components of different nodes.
 
+pub(crate) mod fault_nodes;
 mod topics;
 mod wires;
 

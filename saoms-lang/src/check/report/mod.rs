@@ -59,6 +59,11 @@ struct ReplicaDiagnostic {
 }
 
 impl<'a> Report<'a> {
+    /// The path of a file.
+    pub(crate) fn path(&self, file: FileId) -> &str {
+        self.sources.get(file).path()
+    }
+
     pub(crate) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {
         Self {
             sources,

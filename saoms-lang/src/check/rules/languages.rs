@@ -13,6 +13,7 @@ use saoms_api::{Finding, Place};
 use crate::assembly::on_bus;
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Member};
+use crate::check::placement::fault_nodes::FaultNodes;
 use crate::check::properties::findings::{Subject, diagnostic};
 use crate::check::report::Report;
 use crate::diagnostic::{Severity, codes};
@@ -113,6 +114,7 @@ impl<'f, 'a> Languages<'f, 'a> {
     /// What the faults of a scenario can name: components of its site, or all outside of sites.
     fn fault_subjects(&self, site: &str) -> FaultSubjects {
         let mut subjects = FaultSubjects { is_complete: true, ..FaultSubjects::default() };
+        let nodes = FaultNodes::of(self.fleet, self.checks);
         let members = self.fleet.members.iter().zip(self.checks).enumerate();
         for (place, (member, check)) in members.filter(|(_, (member, _))| member.runs()) {
             if !(site.is_empty() || member.site == *site) {
@@ -133,7 +135,8 @@ impl<'f, 'a> Languages<'f, 'a> {
             for declared in &class.subscribes {
                 subjects.topic(on_bus(&declared.name)).readers.push(path.clone());
             }
-            let (node, is_periodic) = (member.node.to_string(), class.class.declaration().is_periodic());
+            let node = nodes.of_member(member).to_string();
+            let is_periodic = class.class.declaration().is_periodic();
             subjects.components.push(SubjectComponent { path, node, is_periodic });
         }
         subjects

@@ -1,6 +1,7 @@
 //! Components of a fleet in the making, each with its name in its scope.
 
 use std::borrow::Cow;
+use std::path::Path;
 
 use smol_str::SmolStr;
 
@@ -53,6 +54,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             is_partial,
             site,
             node,
+            program: self.program(),
             repeated: None,
             path,
         });
@@ -132,6 +134,15 @@ impl<'a> Unfolding<'a, '_, '_> {
             None => one,
         });
         around
+    }
+
+    /// The name of the program that would run the outermost composite alone, where others were asked for, too: that of
+    /// its file.
+    fn program(&self) -> SmolStr {
+        let is_one_of_several = self.fleet.contribution.asked_for().len() > 1;
+        let outermost = self.open.first().filter(|_| is_one_of_several).map(|open| open.composite.origin.file());
+        let name = outermost.and_then(|file| Path::new(self.report.path(file)).file_stem()?.to_str());
+        name.filter(|name| is_local_name(name)).map(SmolStr::from).unwrap_or_default()
     }
 
     /// The default node of the composites that were asked for.

@@ -76,6 +76,7 @@ fn mule(path: &str, load: &str, refuses: &str) -> ComponentSpec {
         path: path.to_owned(),
         site: Default::default(),
         node: Default::default(),
+        fault_node: Default::default(),
         class,
         library: None,
         values: values.into(),
