@@ -37,6 +37,8 @@ typedef struct Area {
 /* What it knows of a zone. */
 typedef struct Zone {
     uint32_t number;
+    /* The component that speaks for it. */
+    uint32_t speaker;
     /* False once other zones have its blocks. */
     int is_zone;
     Area area;
@@ -84,6 +86,8 @@ typedef struct Patrol {
     Position own, said;
     Position peers[MOST_PEERS];
     size_t peer_count;
+    /* The components that speak for them. */
+    uint32_t speakers[MOST_PEERS];
     /* 1 or -1. */
     int direction;
     int waited;

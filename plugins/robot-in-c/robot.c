@@ -281,10 +281,10 @@ static SaomsTopicView topic(const char *name, const char *message, const char *s
     return view;
 }
 
-/* Somebody in its site grants blocks. */
+/* Somebody in its site grants blocks: a component that does so without a number is no zone. */
 static void note_zone(void *has_zones, uint32_t sender, uint32_t has_begun, int64_t number) {
-    (void)sender, (void)has_begun, (void)number;
-    *(int *)has_zones = 1;
+    (void)sender, (void)has_begun;
+    *(int *)has_zones |= number >= 0;
 }
 
 static SaomsStatus patrol_initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {

@@ -46,6 +46,17 @@ static int has_more_right(const Position *one, const Position *other) {
     return one->robot < other->robot;
 }
 
+/* Whether a robot speaks, and no other component in its name: for a robot that the fleet does not know, as one of another
+ * program, that is the first one that does. */
+static int is_of(const Patrol *patrol, const SaomsHostHandle *host, size_t place, uint32_t robot, uint32_t sender) {
+    int64_t own;
+    if (place < patrol->peer_count && patrol->speakers[place] == sender) {
+        return 1;
+    }
+    own = host->functions->speaker(host->state, saoms_text("POSTOPIC"), robot);
+    return own < 0 ? place == patrol->peer_count : own == sender;
+}
+
 SaomsStatus hear_positions(Patrol *patrol, const SaomsHostHandle *host, SaomsSink error) {
     size_t at, place;
     const SaomsInbox *inbox;
@@ -61,10 +72,14 @@ SaomsStatus hear_positions(Patrol *patrol, const SaomsHostHandle *host, SaomsSin
         }
         for (place = 0; place < patrol->peer_count && patrol->peers[place].robot != peer.robot; place++) {
         }
+        if (!is_of(patrol, host, place, peer.robot, inbox->messages[at].sender)) {
+            continue;
+        }
         if (place == MOST_PEERS) {
             return saoms_fail(error, "there are more robots than the patrol can know");
         }
         patrol->peers[place] = peer;
+        patrol->speakers[place] = inbox->messages[at].sender;
         if (place == patrol->peer_count) {
             patrol->peer_count++;
         }

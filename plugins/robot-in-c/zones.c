@@ -102,17 +102,31 @@ static int is_beside(Block one, Block other) {
     return labs((long)one.x - other.x) + labs((long)one.y - other.y) == 1;
 }
 
-static SaomsStatus hear_territory(Passage *passage, SaomsReader *reader, SaomsSink error) {
+static SaomsStatus hear_territory(Passage *passage, const SaomsHostHandle *host, const SaomsMessageView *message,
+                                  SaomsSink error) {
+    SaomsReader bytes = saoms_reader(message->bytes), *reader = &bytes;
     uint32_t number = saoms_read_u32(reader);
+    Zone *zone;
+    SaomsStatus status;
     Area area;
     area.term = saoms_read_u64(reader);
     area.corner = read_block(reader);
     area.width = saoms_read_u32(reader);
     area.height = saoms_read_u32(reader);
-    return reader->failed ? SaomsStatus_OK : learn_area(passage, number, &area, error);
+    /* The fleet knows all its zones: nobody else grants anything, whatever it says. */
+    if (reader->failed || host->functions->speaker(host->state, saoms_text("ZONETOPIC"), number) != message->sender) {
+        return SaomsStatus_OK;
+    }
+    status = learn_area(passage, number, &area, error);
+    zone = zone_of(passage, number);
+    if (zone != NULL) {
+        zone->speaker = message->sender;
+    }
+    return status;
 }
 
-static void hear_grant(Patrol *patrol, SaomsReader *reader) {
+static void hear_grant(Patrol *patrol, const SaomsMessageView *message) {
+    SaomsReader bytes = saoms_reader(message->bytes), *reader = &bytes;
     Passage *passage = &patrol->passage;
     uint32_t number, robot;
     uint64_t term, incarnation, heard;
@@ -127,7 +141,7 @@ static void hear_grant(Patrol *patrol, SaomsReader *reader) {
     read_block(reader);
     zone = zone_of(passage, number);
     if (reader->failed || robot != patrol->number || incarnation != passage->incarnation || zone == NULL ||
-        !zone->is_zone || term != zone->area.term) {
+        !zone->is_zone || term != zone->area.term || message->sender != zone->speaker) {
         return;
     }
     if (heard > zone->heard) {
@@ -163,15 +177,13 @@ SaomsStatus hear_zones(Patrol *patrol, const SaomsHostHandle *host, SaomsSink er
     if (passage->territories_heard < host->inbox_count) {
         inbox = &host->inboxes[passage->territories_heard];
         for (at = 0; at < inbox->count && status == SaomsStatus_OK; at++) {
-            SaomsReader reader = saoms_reader(inbox->messages[at].bytes);
-            status = hear_territory(&patrol->passage, &reader, error);
+            status = hear_territory(&patrol->passage, host, &inbox->messages[at], error);
         }
     }
     if (passage->grants_heard < host->inbox_count) {
         inbox = &host->inboxes[passage->grants_heard];
         for (at = 0; at < inbox->count; at++) {
-            SaomsReader reader = saoms_reader(inbox->messages[at].bytes);
-            hear_grant(patrol, &reader);
+            hear_grant(patrol, &inbox->messages[at]);
         }
     }
     return status;

@@ -459,6 +459,9 @@ typedef struct SaomsHostFunctions {
     // Shows each other component of the fleet that may publish on a topic, as it is declared, to `visit`, which gets
     // `visitor` as its first argument. The name of the topic is that in the declarations.
     void (*publishers)(void *state, struct SaomsBytes topic, void *visitor, SaomsPublisherVisitor visit);
+    // The index in the running fleet of the component that says by a number who speaks in messages of a topic; -1 if
+    // there is none. The name of the topic is that in the declarations.
+    int64_t (*speaker)(void *state, struct SaomsBytes topic, uint32_t number);
 } SaomsHostFunctions;
 
 // A message that arrived.

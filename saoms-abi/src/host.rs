@@ -155,6 +155,9 @@ pub struct HostFunctions {
     /// `visitor` as its first argument. The name of the topic is that in the declarations.
     pub publishers:
         unsafe extern "C" fn(state: *mut c_void, topic: Bytes, visitor: *mut c_void, visit: PublisherVisitor),
+    /// The index in the running fleet of the component that says by a number who speaks in messages of a topic; -1 if
+    /// there is none. The name of the topic is that in the declarations.
+    pub speaker: unsafe extern "C" fn(state: *mut c_void, topic: Bytes, number: u32) -> i64,
 }
 
 /// The visitor of what a component keeps, called with a number and the bytes under it.

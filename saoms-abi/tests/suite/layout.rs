@@ -60,7 +60,7 @@ fn layout() -> String {
         RecordView { id, text, names, values, count }
         HostHandle { state, functions, inboxes, inbox_count }
         TopicView { name, message, schema, kind }
-        HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed, register_stop, keep, kept, set_region, departed, goes_on, raise, alert, publishers }
+        HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed, register_stop, keep, kept, set_region, departed, goes_on, raise, alert, publishers, speaker }
         EntriesHandle { state, functions }
         EntryView { name, of, effector }
         EntriesFunctions { size, declaration, count, describe, get, set, get_bytes, set_bytes, destroy }

@@ -174,6 +174,13 @@ unsafe extern "C" fn publishers(state: *mut c_void, topic: Bytes, visitor: *mut 
     }
 }
 
+unsafe extern "C" fn speaker(state: *mut c_void, topic: Bytes, number: u32) -> i64 {
+    // SAFETY: callers pass the state of their handle, and lend the name to this call.
+    unsafe {
+        with_host(state, -1, |host| host.speaker(topic.get_text().unwrap_or_default(), number).map_or(-1, i64::from))
+    }
+}
+
 unsafe extern "C" fn raise(state: *mut c_void, event: Bytes, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the text to this call.
     unsafe { guarded(error, || host(state)?.raise(event.get_text()?)) }
@@ -407,6 +414,7 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     raise,
     alert,
     publishers,
+    speaker,
 };
 
 /// A time of the other side.

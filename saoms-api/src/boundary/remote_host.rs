@@ -268,6 +268,10 @@ impl Host for RemoteHost<'_> {
         known
     }
 
+    fn speaker(&self, topic: &str, number: u32) -> Option<u32> {
+        u32::try_from(get!(self.speaker, Bytes::text(topic), number)).ok()
+    }
+
     fn keep(&mut self, key: u64, bytes: &[u8]) -> Result<(), Failure> {
         let mut error = Buffer::default();
         outcome(get!(self.keep, key, Bytes::lend(bytes), sink(&mut error)), &error.bytes)

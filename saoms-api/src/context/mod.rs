@@ -299,6 +299,46 @@ impl<'a> Context<'a> {
         self.host.publishers(topic.name())
     }
 
+    /// The component that says by this number [who speaks](Message#who-speaks) in messages of a topic, as the fleet is
+    /// now: its index in the running fleet, as in [`Header::sender`]. `None` if no component of the fleet does; of
+    /// several with one number the first. It may be this component, one of another node, or one that is not scheduled.
+    /// The time that this takes does not depend on the number of components.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure, Message, Subscription, Topic};
+    ///
+    /// #[derive(Clone, Debug, Message)]
+    /// #[message(speaker("guest"))]
+    /// struct Order {
+    ///     guest: u32,
+    /// }
+    ///
+    /// const ORDER: Topic<Order> = Topic::event("ORDER");
+    ///
+    /// /// Takes the orders of guests, and from nobody else in their name.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Waiter", periodic)]
+    /// struct Waiter {
+    ///     #[subscribes(ORDER)]
+    ///     orders: Subscription<Order>,
+    /// }
+    ///
+    /// impl Component for Waiter {
+    ///     type Properties = ();
+    ///
+    ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         let orders = context.receive(&self.orders).with_headers();
+    ///         let own = orders.filter(|(header, order)| context.speaker(&ORDER, order.guest) == Some(header.sender));
+    ///         let taken = own.count();
+    ///         context.count("orders", i64::try_from(taken).unwrap_or(i64::MAX));
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    pub fn speaker<M: Message>(&self, topic: &Topic<M>, number: u32) -> Option<u32> {
+        self.host.speaker(topic.name(), number)
+    }
+
     /// Keeps these bytes under a number that the component chooses, beyond its crash: [`kept`](Context::kept) gives
     /// them back. No bytes remove what is kept under that number. They are lost if this execution fails.
     ///

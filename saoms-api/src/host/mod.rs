@@ -126,6 +126,11 @@ pub trait Host {
         let _ = topic;
         Vec::new()
     }
+    /// See [`Context::speaker`](crate::Context::speaker). The name of the topic is that in the declarations.
+    fn speaker(&self, topic: &str, number: u32) -> Option<u32> {
+        let mut publishers = self.publishers(topic).into_iter();
+        publishers.find(|one| one.number == Some(number)).map(|one| one.sender)
+    }
     /// See [`Context::departed`](crate::Context::departed).
     fn departed(&self, subscription: u32) -> &[Departed];
     /// See [`Context::keep`](crate::Context::keep).

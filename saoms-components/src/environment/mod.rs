@@ -25,7 +25,7 @@ use crate::messages::{
     ExceptionalKind, FIRST_VISIT, Fault, LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList, VISIT, Visit,
 };
 use crate::report::pieces;
-use crate::validation::{MessageValidator, Validate};
+use crate::validation::MessageValidator;
 
 use open_job::{KnownRobot, OpenJob};
 use player::Player;
@@ -204,7 +204,7 @@ impl Environment {
         }
         for (header, situation) in context.receive(&self.situations).with_headers() {
             // Masters and robots report impossible ones.
-            if situation.validate(header.sender, &mut self.validator, self.map.as_ref()).is_ok() {
+            if self.validator.judge(situation, header, self.map.as_ref(), context).is_ok() {
                 self.hear_situation(situation, header, context.execution());
             }
         }

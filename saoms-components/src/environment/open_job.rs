@@ -195,7 +195,7 @@ impl Environment {
                 lost.into_iter().for_each(|job| job.lose(robot, execution));
             }
         }
-        let by_robot = self.validator.is_speaker(header.sender);
+        let by_robot = self.validator.speaks(header.sender);
         self.open.entry(luggage).and_modify(|job| job.hear(said, (sent, by_robot), over, execution));
     }
 

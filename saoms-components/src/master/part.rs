@@ -47,8 +47,10 @@ impl Part {
     /// Learns the blocks of the zone. Returns what was requested before they were known.
     pub(super) fn learn(&mut self, context: &Context<'_>) -> Vec<(Header, Early)> {
         let zone = self.zone;
-        let own = context.receive(&self.territories).rfind(|territory| territory.zone == zone);
-        self.territory = own.cloned().or_else(|| self.territory.take());
+        let mut all = context.receive(&self.territories).with_headers();
+        let is_its = |sender: u32| context.speaker(&TERRITORY, zone).is_none_or(|own| own == sender);
+        let own = all.rfind(|(header, territory)| territory.zone == zone && is_its(header.sender));
+        self.territory = own.map(|(_, territory)| territory.clone()).or_else(|| self.territory.take());
         if self.territory.is_some() { std::mem::take(&mut self.early) } else { Vec::new() }
     }
 

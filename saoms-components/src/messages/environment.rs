@@ -6,7 +6,7 @@ use saoms_api::{Field, Message, Time, Topic};
 
 use super::job_name;
 use crate::grid::{Block, Map};
-use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+use crate::validation::{MessageValidator, Problem, Sender, Validate, of_robot};
 
 /// Events of any kind from the environment.
 ///
@@ -124,12 +124,18 @@ impl fmt::Display for EventLuggage {
 
 impl Validate for EventLuggage {
     const WHAT: &'static str = "a message";
+    const SPOKEN_ON: Option<Topic<EventLuggage>> = Some(EVENT_LUGGAGE);
 
     fn about(&self) -> String {
         format!("{} from {} to {}", job_name(self.luggage), self.from, self.to)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         let EventLuggage { robot, from, to, block, .. } = *self;
         match self.stage {
             LuggageStage::Request => {
@@ -299,7 +305,12 @@ impl Validate for Fault {
         of_robot(self.robot)
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
         validator.check_known(self.robot)
     }
 }
@@ -347,7 +358,12 @@ impl Validate for Removal {
         of_robot(self.robot)
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         self.block.map_or(Ok(()), |block| Problem::of_block(block, area))?;
         validator.check_known(self.robot)
     }

@@ -6,7 +6,7 @@ use saoms_api::{Message, Topic};
 
 use super::job_name;
 use crate::grid::{Block, Map};
-use crate::validation::{MessageValidator, Problem, Validate};
+use crate::validation::{MessageValidator, Problem, Sender, Validate};
 
 /// Luggage that a master assigns to single robots.
 ///
@@ -42,7 +42,12 @@ impl Validate for Assignment {
         format!("{} from {} to {}", job_name(self.luggage), self.from, self.to)
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         // What a lease is about its robot knows.
         for block in [self.from, self.to].into_iter().filter(|_| self.lease == 0) {
             Problem::of_block(block, area)?;
@@ -94,12 +99,18 @@ impl Lease {
 
 impl Validate for Lease {
     const WHAT: &'static str = "the lease";
+    const SPOKEN_ON: Option<Topic<Lease>> = Some(LEASE);
 
     fn about(&self) -> String {
         format!("luggage {}", self.luggage)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
         validator.check_known_speaker(self.robot, sender)
     }
 }

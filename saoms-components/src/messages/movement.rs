@@ -6,7 +6,7 @@ use saoms_api::{Field, Message, Topic};
 
 use crate::grid::{Block, Map};
 use crate::hardware::Area;
-use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+use crate::validation::{MessageValidator, Problem, Sender, Validate, of_robot};
 
 /// Position and next blocks of each robot, the newest message of each.
 ///
@@ -83,6 +83,7 @@ impl fmt::Display for Position {
 
 impl Validate for Position {
     const WHAT: &'static str = "the position";
+    const SPOKEN_ON: Option<Topic<Position>> = Some(POSITION);
 
     fn about(&self) -> String {
         of_robot(self.robot)
@@ -90,7 +91,12 @@ impl Validate for Position {
 
     /// The first message about an unknown robot is accepted: a robot sends its position before anything else, and its
     /// block is kept free.
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         let Position { block, next, wanted, .. } = *self;
         for block in [block, next, wanted] {
             Problem::of_block(block, area)?;

@@ -3,7 +3,7 @@
 use saoms_api::{Field, Message, Topic};
 
 use crate::grid::{Block, Map};
-use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+use crate::validation::{MessageValidator, Problem, Sender, Validate, of_robot};
 
 /// Territories of zones, the newest message of each.
 ///
@@ -252,25 +252,37 @@ pub fn link(zone: u32, robot: u32) -> u64 {
 
 impl Validate for Territory {
     const WHAT: &'static str = "the territory";
+    const SPOKEN_ON: Option<Topic<Territory>> = Some(TERRITORY);
 
     fn about(&self) -> String {
         format!("zone {}", self.zone)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
         // Zones have numbers of their own: a validator of territories sees no robots.
-        validator.check_speaker(self.zone, sender)
+        validator.check_zone(self.zone, sender)
     }
 }
 
 impl Validate for GrantRequest {
     const WHAT: &'static str = "the request for a grant";
+    const SPOKEN_ON: Option<Topic<GrantRequest>> = Some(GRANT_REQUEST);
 
     fn about(&self) -> String {
         of_robot(self.robot)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         let held = self.held.iter().map(|step| step.block);
         for block in [self.block, self.end, self.at, self.goal, self.charger].into_iter().chain(held) {
             Problem::of_block(block, area)?;
@@ -281,12 +293,18 @@ impl Validate for GrantRequest {
 
 impl Validate for Presence {
     const WHAT: &'static str = "where the robot is";
+    const SPOKEN_ON: Option<Topic<Presence>> = Some(PRESENCE);
 
     fn about(&self) -> String {
         of_robot(self.robot)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         for block in [self.block, self.end, self.charger] {
             Problem::of_block(block, area)?;
         }
@@ -296,15 +314,22 @@ impl Validate for Presence {
 
 impl Validate for Grant {
     const WHAT: &'static str = "the grant";
+    const SPOKEN_ON: Option<Topic<Grant>> = Some(GRANT);
 
     fn about(&self) -> String {
         of_robot(self.robot)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         for step in &self.steps {
             Problem::of_block(step.block, area)?;
         }
-        validator.check_known_speaker(self.zone, sender)
+        validator.check_known(self.zone)?;
+        validator.check_zone(self.zone, sender)
     }
 }

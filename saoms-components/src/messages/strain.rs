@@ -6,7 +6,7 @@ use std::time::Duration;
 use saoms_api::{Message, Time, Topic, builtin_interfaces};
 
 use crate::grid::{Block, Map};
-use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+use crate::validation::{MessageValidator, Problem, Sender, Validate, of_robot};
 
 /// The greatest factor of a fault: a robot that is slower stands still, and a battery that drains faster is empty.
 pub(crate) const MOST_FACTOR: f64 = 1000.0;
@@ -76,7 +76,12 @@ impl Validate for Slow {
         of_robot(self.robot)
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
         Problem::of_factor(self.factor)?;
         validator.check_known(self.robot)
     }
@@ -89,7 +94,12 @@ impl Validate for Drain {
         of_robot(self.robot)
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
         if let Some(percent) = self.percent.filter(|percent| !(0.0..=100.0).contains(percent)) {
             return Err(Problem::Battery { percent });
         }
@@ -105,7 +115,12 @@ impl Validate for Outage {
         format!("the charger at {}", self.charger)
     }
 
-    fn validate(&self, _sender: u32, _validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        _validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         Problem::of_free(self.charger, area)
     }
 }

@@ -6,7 +6,7 @@ use saoms_api::{Field, Message, Time, Topic};
 
 use crate::grid::{Block, Map};
 use crate::robot::{Job, Policy};
-use crate::validation::{LONGEST_PERIOD, MessageValidator, Problem, Validate, of_robot};
+use crate::validation::{LONGEST_PERIOD, MessageValidator, Problem, Sender, Validate, of_robot};
 
 /// Commands to robots to wake or to sleep.
 ///
@@ -31,7 +31,12 @@ impl Validate for RobotState {
         of_robot(self.robot)
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
         validator.check_known(self.robot)?;
         if self.emulate == 0 { Ok(()) } else { validator.check_known(self.emulate) }
     }
@@ -103,12 +108,18 @@ impl fmt::Display for RobotList {
 
 impl Validate for RobotList {
     const WHAT: &'static str = "the state";
+    const SPOKEN_ON: Option<Topic<RobotList>> = Some(ROBOT_LIST);
 
     fn about(&self) -> String {
         of_robot(self.robot)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         if !(0.0..=100.0).contains(&self.battery) {
             return Err(Problem::Battery { percent: self.battery });
         }
@@ -221,12 +232,18 @@ impl fmt::Display for CriticalSituation {
 
 impl Validate for CriticalSituation {
     const WHAT: &'static str = "the critical situation";
+    const SPOKEN_ON: Option<Topic<CriticalSituation>> = Some(CRITICAL_SITUATION);
 
     fn about(&self) -> String {
         of_robot(self.critical)
     }
 
-    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         validator.check_known(self.critical)?;
         if self.stage != CriticalStage::Request {
             Problem::of_block(self.healer_block, area)?;

@@ -6,7 +6,7 @@ use saoms_api::{Message, Topic};
 
 use super::EventLuggage;
 use crate::grid::{Block, Map};
-use crate::validation::{MessageValidator, Problem, Validate};
+use crate::validation::{MessageValidator, Problem, Sender, Validate};
 
 /// Blocks that robots visit. Which robot does it is said on ELMSTOPIC, under the same number.
 ///
@@ -75,7 +75,12 @@ impl Validate for Visit {
         format!("visit {} from {first} to {last}", self.count())
     }
 
-    fn validate(&self, _sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+    fn validate(
+        &self,
+        _sender: Sender<'_>,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
         if !is_visit(self.visit) || self.stops.is_empty() {
             return Err(Problem::Visit);
         }

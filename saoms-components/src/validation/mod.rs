@@ -4,6 +4,7 @@
 //! logged with its sender once for each sender and kind of mistake, so that no sender floods the log.
 
 mod problem;
+mod sender;
 #[cfg(test)]
 mod tests;
 mod validate;
@@ -15,14 +16,17 @@ use saoms_api::{Context, Field, Header, Level};
 use crate::grid::Map;
 
 pub(crate) use problem::Problem;
+pub(crate) use sender::Sender;
 pub(crate) use validate::{LONGEST_PERIOD, Validate, of_robot};
 
 /// Validator of the messages that one component receives.
 ///
-/// If several components send messages as the same robot, the first of them speaks for it.
+/// As a robot of the fleet speaks the component that has its number, and nobody else, whoever speaks first. For a robot
+/// that the fleet does not know, as one of another program, the first component speaks that sends messages as it.
 #[derive(Debug, Default)]
 pub(crate) struct MessageValidator {
-    /// The component that speaks for each robot, as pairs of robot and component, sorted by robot.
+    /// The component that speaks for each robot, or zone, as pairs of its number and the component, sorted by number.
+    /// They are those of the fleet, as far as it knows them.
     speakers: Vec<(u32, u32)>,
     /// Components that requested luggage.
     requesters: Vec<u32>,
@@ -70,10 +74,25 @@ impl MessageValidator {
         area: Option<&Map>,
         context: &mut Context<'_>,
     ) -> bool {
-        let Err(problem) = message.validate(header.sender, self, area) else { return true };
+        let Err(problem) = self.judge(message, header, area, context) else { return true };
         context.count("messages.ignored", 1);
         self.log_rejection(context, header, message, problem);
         false
+    }
+
+    /// Judges a message, and does not say so. The area is checked if it is known.
+    ///
+    /// # Errors
+    /// The message is impossible, or sent in another one's name.
+    #[inline]
+    pub(crate) fn judge<M: Validate>(
+        &mut self,
+        message: &M,
+        header: Header,
+        area: Option<&Map>,
+        context: &Context<'_>,
+    ) -> Result<(), Problem> {
+        Sender::judge::<M, _>(header.sender, context, |sender| message.validate(sender, self, area))
     }
 
     /// Logs and counts a rejected message with its sender.
@@ -104,6 +123,9 @@ impl MessageValidator {
             Problem::Foreign { robot, speaker } => {
                 format!("it has the number of robot {robot}, which {} uses", name(speaker))
             }
+            Problem::ForeignZone { zone, speaker } => {
+                format!("it has the number of zone {zone}, which {} uses", name(speaker))
+            }
             problem => problem.to_string(),
         };
         context.log(
@@ -114,26 +136,31 @@ impl MessageValidator {
 
     /// Records that a component speaks for a robot.
     pub(crate) fn note_speaker(&mut self, robot: u32, sender: u32) {
-        if let Err(place) = self.speakers.binary_search_by_key(&robot, |(known, _)| *known) {
+        if let Err(place) = self.place(robot) {
             self.speakers.insert(place, (robot, sender));
         }
     }
 
     /// True if a component speaks for a robot.
-    pub(crate) fn is_speaker(&self, sender: u32) -> bool {
-        self.speakers.iter().any(|(_, speaker)| *speaker == sender)
+    pub(crate) fn is_speaker(&self, sender: Sender<'_>) -> bool {
+        self.speaks(sender.component)
+    }
+
+    /// The same for the index of a component.
+    pub(crate) fn speaks(&self, component: u32) -> bool {
+        self.speakers.iter().any(|(_, speaker)| *speaker == component)
     }
 
     /// Records that a component requested luggage.
-    pub(crate) fn note_requester(&mut self, sender: u32) {
-        if !self.requesters.contains(&sender) {
-            self.requesters.push(sender);
+    pub(crate) fn note_requester(&mut self, sender: Sender<'_>) {
+        if !self.requesters.contains(&sender.component) {
+            self.requesters.push(sender.component);
         }
     }
 
     /// True if a component requested luggage before.
-    pub(crate) fn is_requester(&self, sender: u32) -> bool {
-        self.requesters.contains(&sender)
+    pub(crate) fn is_requester(&self, sender: Sender<'_>) -> bool {
+        self.requesters.contains(&sender.component)
     }
 
     /// Records that robots announce themselves.
@@ -148,32 +175,68 @@ impl MessageValidator {
 
     /// Forgets who speaks for a robot that is out of earshot.
     pub(crate) fn forget_speaker(&mut self, robot: u32) {
-        if let Ok(place) = self.speakers.binary_search_by_key(&robot, |(known, _)| *known) {
+        if let Ok(place) = self.place(robot) {
             self.speakers.remove(place);
         }
     }
 
-    /// The component that speaks for a robot.
-    fn speaker(&self, robot: u32) -> Option<u32> {
-        let place = self.speakers.binary_search_by_key(&robot, |(known, _)| *known).ok()?;
-        self.speakers.get(place).map(|(_, sender)| *sender)
+    /// The place of the component that speaks for a robot or zone, or where it would be.
+    fn place(&self, number: u32) -> Result<usize, usize> {
+        self.speakers.binary_search_by_key(&number, |(known, _)| *known)
     }
 
-    /// Checks that a component may announce a robot.
-    pub(crate) fn check_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
-        match self.speaker(robot) {
-            _ if robot == 0 => Err(Problem::NoRobot),
-            Some(speaker) if speaker != sender => Err(Problem::Foreign { robot, speaker }),
-            Some(_) => Ok(()),
-            None => {
-                self.note_speaker(robot, sender);
-                Ok(())
+    /// The component that speaks for a robot or zone.
+    fn speaker(&self, number: u32) -> Option<u32> {
+        self.speakers.get(self.place(number).ok()?).map(|(_, sender)| *sender)
+    }
+
+    /// Decides who speaks for a robot or zone, after a word of a component that is not known to do so. The fleet knows
+    /// best, also if another one was first: it may have changed since. Returns the component.
+    #[cold]
+    fn settle(&mut self, number: u32, sender: Sender<'_>) -> u32 {
+        match (self.place(number), sender.speaker(number)) {
+            (Ok(place), own) => {
+                let known = &mut self.speakers[place].1;
+                *known = own.unwrap_or(*known);
+                *known
+            }
+            // That a liar speaks in its name does not make it known.
+            (Err(_), Some(own)) if own != sender.component => own,
+            (Err(place), _) => {
+                self.speakers.insert(place, (number, sender.component));
+                sender.component
             }
         }
     }
 
+    /// Checks that a component may announce a robot.
+    #[inline]
+    pub(crate) fn check_speaker(&mut self, robot: u32, sender: Sender<'_>) -> Result<(), Problem> {
+        match self.speaker(robot) {
+            _ if robot == 0 => Err(Problem::NoRobot),
+            Some(speaker) if speaker == sender.component => Ok(()),
+            _ => match self.settle(robot, sender) {
+                speaker if speaker == sender.component => Ok(()),
+                speaker => Err(Problem::Foreign { robot, speaker }),
+            },
+        }
+    }
+
+    /// Checks that a component may speak for a zone. A fleet knows all its zones: nobody else grants anything.
+    #[inline]
+    pub(crate) fn check_zone(&mut self, zone: u32, sender: Sender<'_>) -> Result<(), Problem> {
+        match self.speaker(zone) {
+            Some(speaker) if speaker == sender.component => Ok(()),
+            _ if zone == 0 || sender.speaker(zone).is_none() => Err(Problem::UnknownZone { zone }),
+            _ => match self.settle(zone, sender) {
+                speaker if speaker == sender.component => Ok(()),
+                speaker => Err(Problem::ForeignZone { zone, speaker }),
+            },
+        }
+    }
+
     /// Checks that a component may speak for a robot that was announced before.
-    pub(crate) fn check_known_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
+    pub(crate) fn check_known_speaker(&mut self, robot: u32, sender: Sender<'_>) -> Result<(), Problem> {
         self.check_known(robot)?;
         self.check_speaker(robot, sender)
     }

@@ -12,6 +12,10 @@ pub(crate) enum Problem {
     Unknown { robot: u32 },
     /// A robot for which another component speaks.
     Foreign { robot: u32, speaker: u32 },
+    /// A zone for which another component speaks.
+    ForeignZone { zone: u32, speaker: u32 },
+    /// A zone that the fleet does not have.
+    UnknownZone { zone: u32 },
     /// A block outside the area; the area is its width and height, if they are known.
     Outside { block: Block, area: Option<(u32, u32)> },
     /// A blocked block.
@@ -85,6 +89,12 @@ impl fmt::Display for Problem {
             }
             Problem::Foreign { robot, speaker } => {
                 write!(formatter, "it has the number of robot {robot}, which component {speaker} uses")
+            }
+            Problem::ForeignZone { zone, speaker } => {
+                write!(formatter, "it has the number of zone {zone}, which component {speaker} uses")
+            }
+            Problem::UnknownZone { zone } => {
+                write!(formatter, "found zone {zone}, which the fleet does not have, expected one of its zones")
             }
             Problem::Outside { block, area: Some((width, height)) } => write!(
                 formatter,

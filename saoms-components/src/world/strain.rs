@@ -56,7 +56,7 @@ impl World {
 
     /// True if a fault is possible. Others are counted.
     fn can_be<M: Validate>(&mut self, context: &mut Context<'_>, header: Header, fault: &M) -> bool {
-        match fault.validate(header.sender, &mut self.validator, Some(self.referee.map())) {
+        match self.validator.judge(fault, header, Some(self.referee.map()), context) {
             Ok(()) => true,
             Err(problem) => self.ignore(context, header, (fault, problem)),
         }

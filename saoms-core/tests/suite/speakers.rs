@@ -1,12 +1,16 @@
 //! Messages from outside in the name of a component of the fleet.
 
+use std::sync::Arc;
+
 use saoms_api::host::{Registration, cdr};
-use saoms_api::{Class, Component, Context, Failure, Field, Message, Properties, Publisher, Topic};
+use saoms_api::{
+    Cause, Class, Component, Context, Failure, Field, Header, Message, Properties, Publisher, Time, Topic, info,
+};
 use saoms_core::schedule::{InjectError, InjectedContent, Injection, Order, OrderError, RunningFleet};
 use saoms_lang::registry::Registry;
 use serde_json::{Value, json};
 
-use crate::fleet::{assembly_of, simulated};
+use crate::fleet::{Diary, assembly_of, simulated, unindent};
 
 #[derive(Clone, Copy, Debug, Default, Field)]
 enum Stage {
@@ -53,6 +57,52 @@ impl Component for Speaker {
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         context.send(&self.said, Said::default())
     }
+}
+
+/// Says which component has which number on its topic.
+#[derive(Class)]
+#[class(name = "test.Asker", periodic)]
+struct Asker;
+
+impl Component for Asker {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Asker)
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let speaker = |number: u32| {
+            let sender = context.speaker(&SAID, number)?;
+            let header = Header { sender, sent: Time::START, cause: Cause::default() };
+            Some(format!("{number} is {}", context.sender_name(header)?))
+        };
+        let known: Vec<String> = (0..10).filter_map(speaker).collect();
+        info!(context, "{}", known.join(", "));
+        Ok(())
+    }
+}
+
+#[test]
+fn components_know_who_has_a_number_on_a_topic() {
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Speaker>()).unwrap();
+    registry.add(Registration::of::<Asker>()).unwrap();
+    // One that has not begun, one that speaks on another topic, and one with the number of another.
+    let fleet = "A test.Speaker name=Speaker4 number=7
+         B test.Speaker name=Speaker8
+         C test.Speaker name=Speaker9 startup=false
+         D test.Speaker name=Speaker1 rename=SAID/OTHER
+         E test.Speaker name=Speaker8
+         F test.Speaker name=nobody
+         Y test.Asker
+         Z test.Asker rename=SAID/OTHER";
+    let diary = Arc::new(Diary::default());
+    let fleet = RunningFleet::start(assembly_of(fleet, &registry), simulated(10), vec![diary.clone()]).unwrap();
+    fleet.run_to_end();
+    let expected = "[0.000 s] Y: 7 is A, 8 is B, 9 is C
+        [0.000 s] Z: 1 is D";
+    assert_eq!(unindent(&diary.lines()), unindent(expected));
 }
 
 fn start(text: &str) -> RunningFleet {

@@ -278,9 +278,9 @@ impl MasterEnvironmentKnowledge {
     }
 
     /// Handles what a robot said about luggage of another master, which judges the message.
-    pub(in crate::master) fn hear_elsewhere(&mut self, said: &EventLuggage, header: Header) {
+    pub(in crate::master) fn hear_elsewhere(&mut self, said: &EventLuggage, header: Header, context: &Context<'_>) {
         let is_known = self.crew.get(said.robot).is_some();
-        if is_known && said.validate(header.sender, &mut self.validator, self.filter.area()).is_ok() {
+        if is_known && self.validator.judge(said, header, self.filter.area(), context).is_ok() {
             self.crew.hear_elsewhere(said, header.sent);
         }
     }

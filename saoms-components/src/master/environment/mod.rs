@@ -23,7 +23,7 @@ use crate::messages::{
 };
 use crate::report::pieces;
 use crate::state::Numbers;
-use crate::validation::{Problem, SpeakerMemory, Validate};
+use crate::validation::{Problem, SpeakerMemory};
 use requests::MAX_REQUESTS;
 
 /// The kind of alerts about luggage that no robot can carry.
@@ -179,7 +179,7 @@ impl Component for MasterEnvironment {
         // Robots that have started again since say so below.
         for (header, event) in context.receive(&self.events).with_headers() {
             for fault in event.faults.iter().filter(|fault| fault.is_failure()) {
-                self.note_failure(fault, header);
+                self.note_failure(fault, header, context);
             }
         }
         for departed in context.departed(&self.robots) {
@@ -309,9 +309,8 @@ impl MasterEnvironment {
             context.send(&self.exceptional, exceptional.clone())?;
         }
         for fault in event.faults.iter().filter(|fault| !fault.is_failure()) {
-            if let Err(problem) =
-                fault.validate(header.sender, &mut self.knowledge.validator, self.knowledge.filter.area())
-            {
+            let MasterEnvironmentKnowledge { validator, filter, .. } = &mut self.knowledge;
+            if let Err(problem) = validator.judge(fault, header, filter.area(), context) {
                 context.count("faults.ignored", i64::from(is_alone));
                 self.knowledge.validator.log_rejection(context, header, fault, problem);
             } else {
@@ -337,9 +336,9 @@ impl MasterEnvironment {
     }
 
     /// The component of a robot failed. One that nobody has heard of has nothing to take over.
-    fn note_failure(&mut self, fault: &Fault, header: Header) {
+    fn note_failure(&mut self, fault: &Fault, header: Header, context: &Context<'_>) {
         let MasterEnvironmentKnowledge { validator, filter, .. } = &mut self.knowledge;
-        if fault.validate(header.sender, validator, filter.area()).is_ok() {
+        if validator.judge(fault, header, filter.area(), context).is_ok() {
             self.knowledge.take_away(fault, header);
         }
     }
@@ -445,7 +444,7 @@ impl MasterEnvironment {
             return;
         }
         if !self.knowledge.is_own(said.luggage) {
-            return self.knowledge.hear_elsewhere(said, header);
+            return self.knowledge.hear_elsewhere(said, header, context);
         }
         if !self.knowledge.accepts(said, header, context) {
             return;

@@ -6,7 +6,7 @@ use super::MasterEnvironment;
 use crate::master::assignment::{AssignmentPolicy, MasterEnvironmentKnowledge};
 use crate::master::part::Early;
 use crate::messages::{EventLuggage, Visit, is_visit};
-use crate::validation::{Problem, Validate};
+use crate::validation::Problem;
 
 /// Greatest number of requests that are published in one execution; others follow in the next ones, so that no queue of
 /// a reader that has eight times the period overflows.
@@ -83,7 +83,7 @@ impl MasterEnvironment {
             return Ok(());
         }
         let known = filter.knows(visit.visit).then_some(Problem::KnownLuggage);
-        let judged = visit.validate(header.sender, validator, filter.area());
+        let judged = validator.judge(visit, header, filter.area(), context);
         if let Some(problem) = known.or(judged.err()) {
             context.count("errands.ignored", 1);
             validator.log_rejection(context, header, visit, problem);

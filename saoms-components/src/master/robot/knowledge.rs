@@ -9,7 +9,7 @@ use super::work::Work;
 use crate::gone::Gone;
 use crate::messages::{EnvironmentEvent, EventLuggage, Fault, RobotList};
 use crate::robot::Policy;
-use crate::validation::{MessageValidator, Validate};
+use crate::validation::MessageValidator;
 
 /// Knowledge of the master of the robots: the active robots, and the shifts for which more of them are needed.
 #[derive(Debug, Knowledge)]
@@ -135,7 +135,7 @@ impl MasterRobotKnowledge {
         }
         for (header, said) in context.receive(&luggage).with_headers() {
             // Those who act on it report what is wrong.
-            if said.validate(header.sender, &mut self.validator, None).is_ok() {
+            if self.validator.judge(said, header, None, context).is_ok() {
                 self.work.hear_luggage(said, now, header.cause);
             }
         }

@@ -145,7 +145,8 @@ impl ZoneClient {
     /// # Errors
     /// The component cannot use the topics.
     pub(crate) fn new(context: &mut Context<'_>, robot: u32) -> Result<Option<ZoneClient>, Failure> {
-        if context.publishers(&GRANT).is_empty() {
+        // A component that grants without a number is no zone: robots would not know who it is.
+        if context.publishers(&GRANT).iter().all(|one| one.number.is_none()) {
             return Ok(None);
         }
         let grants = context.subscribe(&GRANT)?;

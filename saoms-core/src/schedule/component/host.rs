@@ -302,6 +302,10 @@ impl Host for ComponentHost<'_> {
         self.shared.publishers(&self.spec().topic(topic), self.part.index)
     }
 
+    fn speaker(&self, topic: &str, number: u32) -> Option<u32> {
+        self.shared.speaker(&self.spec().topic(topic), number)
+    }
+
     fn departed(&self, subscription: u32) -> &[Departed] {
         self.part.departed.get(subscription as usize).map_or(&[], Vec::as_slice)
     }

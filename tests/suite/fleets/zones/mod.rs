@@ -6,6 +6,7 @@ mod corridor;
 mod drawn;
 mod entering;
 mod gone;
+mod impostor;
 mod out_of_reach;
 mod phase;
 mod unheard;
@@ -40,6 +41,11 @@ const TWO: &[(u32, u32)] = &[(0, 3), (3, 5)];
 /// Robots that bring pieces from anywhere to anywhere on the map.
 fn fleet(zones: &[(u32, u32)], robots: u32, pieces: u32) -> Fleet {
     let zones: String = (1..)
+    fleet_after("", zones, robots, pieces)
+}
+
+/// The same, where other components execute first.
+fn fleet_after(first: &str, zones: &[(u32, u32)], robots: u32, pieces: u32) -> Fleet {
         .zip(zones)
         .map(|(number, (x, width))| {
             format!(
@@ -79,13 +85,16 @@ fn fleet(zones: &[(u32, u32)], robots: u32, pieces: u32) -> Fleet {
         })
         .collect();
     Fleet::of_text(format!(
-        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="zoned" targetNamespace="urn:zoned">
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:xsd="http://www.w3.org/2001/XMLSchema" name="zoned"
+              targetNamespace="urn:zoned">
+          <property name="moveTime" type="xsd:string">200ms</property>
+          {first}
           <component name="World">
             <implementation.rust class="saoms.World"/>
             <property name="ID">World</property>
             <property name="period">50</property>
             <property name="map">{MAP}</property>
-            <property name="moveTime">200ms</property>
+            <property name="moveTime" source="$moveTime"/>
           </component>
           {zones}
           <component name="Environment">
@@ -123,6 +132,17 @@ fn robots_deliver_everything_through_one_zone_and_through_two() {
 /// Messages between robots and zones are lost, late, doubled and in another order, for ten minutes.
 #[test]
 fn no_robots_collide_however_bad_their_links_are() {
+/// Moves take ten periods of the robots, and twenty of their zone.
+#[test]
+fn robots_with_slow_moves_are_in_no_deadlock() {
+    for (zones, robots) in [(ONE, 5), (ONE, 8), (TWO, 4)] {
+        for seed in 0..4 {
+            let run = fleet(zones, robots, 20).set("moveTime", "1s").run(seed, HOUR);
+            assert_delivered(&run, 20, &format!("{zones:?}, {robots} robots, seed {seed}"));
+        }
+    }
+}
+
     let topics = ["GRANTTOPIC", "GRANTREQUESTTOPIC", "ZONETOPIC", "POSTOPIC"];
     for seed in 0..3 {
         let mut disturbed = fleet(TWO, 4, 20);
