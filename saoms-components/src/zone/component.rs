@@ -1,4 +1,5 @@
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
 
 use saoms_api::{
     CallError, Cause, Class, Component, Context, Failure, Header, KnownPublisher, Publisher, Region, ReportValue,
@@ -15,6 +16,7 @@ use super::maneuver::Maneuver;
 use super::memory::Record;
 use super::plan::Planned;
 use super::properties::ZoneProperties;
+use super::spoken::{Spoken, longest_move, newest};
 use super::{memory, plan};
 use crate::grid::{Block, Map};
 use crate::hardware::HardwareReference;
@@ -73,14 +75,6 @@ pub struct Zone {
     grants: Publisher<Grant>,
     #[publishes(TERRITORY)]
     territories: Publisher<Territory>,
-}
-
-/// When a robot spoke in its newest incarnation.
-#[derive(Clone, Copy, Debug)]
-struct Spoken {
-    incarnation: u64,
-    first: Time,
-    last: Time,
 }
 
 /// The record of the grants, and the map.
@@ -168,8 +162,8 @@ impl Zone {
         let Beginning { ledger, spoke, is_complete, is_new } = Beginning::of(territory, own, others, &map);
         (self.open, self.asking) = (is_complete, is_new.then(Asking::default));
         if is_complete {
-            let spoken = |(incarnation, first)| Spoken { incarnation, first, last: first };
-            self.spoke.extend(spoke.into_iter().map(|(robot, known)| (robot, spoken(known))));
+            let spoken = spoke.into_iter().map(|(robot, (incarnation, first))| (robot, Spoken::at(incarnation, first)));
+            self.spoke.extend(spoken);
         }
         if is_new && has_record {
             self.keep_all(&ledger, context)?;
@@ -262,9 +256,10 @@ impl Zone {
             if let Some(asking) = &mut self.asking {
                 asking.note_heard(header.sender);
             }
-            if is_newest(&mut self.spoke, request.robot, request.incarnation, header.sent)
+            if let Some(spoken) = newest(&mut self.spoke, request.robot, request.incarnation, header.sent)
                 && !ledger.has_ended(request.robot, request.incarnation)
             {
+                spoken.hear(request, header.sent);
                 let is_lost = request.standing == Standing::Lost;
                 note_lost(lost, request.robot, is_lost.then_some([request.block, request.end]));
             }
@@ -301,7 +296,7 @@ impl Zone {
                     changed.insert(presence.robot);
                 }
             }
-            if !is_newest(&mut self.spoke, presence.robot, presence.incarnation, header.sent)
+            if newest(&mut self.spoke, presence.robot, presence.incarnation, header.sent).is_none()
                 || ledger.has_ended(presence.robot, presence.incarnation)
             {
                 continue;
@@ -420,7 +415,9 @@ impl Zone {
             return;
         }
         let moving = state.maneuvers.iter().flat_map(Maneuver::robots).collect();
-        let found = self.standing_still.count(&state.ledger, &mut state.ground, &moving);
+        let (spoke, period) = (&self.spoke, context.period());
+        let longest_move = || rounds(longest_move(spoke), period);
+        let found = self.standing_still.count(&state.ledger, &mut state.ground, &moving, longest_move);
         self.deadlocked.retain(|robot| {
             let lasts = found.iter().any(|deadlock| deadlock.first() == *robot);
             if !lasts {
@@ -450,17 +447,10 @@ impl Zone {
     }
 }
 
-/// Notes that a robot spoke; `false` if it has said something newer before.
-fn is_newest(spoke: &mut BTreeMap<u32, Spoken>, robot: u32, incarnation: u64, sent: Time) -> bool {
-    let spoken = spoke.entry(robot).or_insert(Spoken { incarnation, first: sent, last: sent });
-    if incarnation > spoken.incarnation {
-        *spoken = Spoken { incarnation, first: sent, last: sent };
-    }
-    let is_newest = incarnation == spoken.incarnation && sent >= spoken.last;
-    if incarnation == spoken.incarnation {
-        (spoken.first, spoken.last) = (spoken.first.min(sent), spoken.last.max(sent));
-    }
-    is_newest
+/// The number of executions that take so long.
+fn rounds(time: Duration, period: Duration) -> u32 {
+    let rounds = time.as_nanos().div_ceil(period.as_nanos().max(1));
+    u32::try_from(rounds).unwrap_or(u32::MAX)
 }
 
 /// Notes the blocks of a robot that cannot move any more, or that it can.

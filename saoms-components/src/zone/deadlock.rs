@@ -8,15 +8,21 @@ use super::ledger::{Ledger, Member};
 use crate::grid::Block;
 use crate::messages::Standing;
 
-/// Number of rounds for which robots have not moved before they count as a deadlock.
+/// Number of rounds for which robots have not moved before they count as a deadlock, and of the longest moves that there
+/// are: of two robots that wait, one may have to wait until others behind it are out of its way.
 ///
 /// Maneuvers are looked for after 4, 8, 16 and 32 rounds without a move. By then there is none, or what came of it has
 /// changed nothing. Rounds in which a robot is in one do not count: it may wait long for its move over an edge.
 const STANDING_STILL: u32 = 40;
+const MOVES: u32 = 20;
 
 /// The robots of a zone that stand still and want to go on.
 #[derive(Debug, Default)]
-pub(super) struct StandingStill(BTreeMap<u32, Standstill>);
+pub(super) struct StandingStill {
+    robots: BTreeMap<u32, Standstill>,
+    /// Number of rounds after which they count as a deadlock.
+    bound: u32,
+}
 
 #[derive(Debug)]
 struct Standstill {
@@ -27,19 +33,30 @@ struct Standstill {
 }
 
 impl StandingStill {
-    /// Counts a round, in which these robots are in a maneuver. Gives the deadlocks of the zone, each once.
-    pub(super) fn count(&mut self, ledger: &Ledger, ground: &mut Ground, moving: &BTreeSet<u32>) -> Vec<Deadlock> {
+    /// Counts a round, in which these robots are in a maneuver. Gives the deadlocks of the zone, each once. Where some
+    /// have waited for long, it counts for how many rounds the longest move lasts.
+    pub(super) fn count(
+        &mut self,
+        ledger: &Ledger,
+        ground: &mut Ground,
+        moving: &BTreeSet<u32>,
+        longest_move: impl FnOnce() -> u32,
+    ) -> Vec<Deadlock> {
         let stands = |robot: &u32| ledger.member(*robot).filter(|member| is_at_rest(member) && member.wants_to_go());
-        self.0.retain(|robot, still| stands(robot).is_some_and(|member| member.granted == still.granted));
+        self.robots.retain(|robot, still| stands(robot).is_some_and(|member| member.granted == still.granted));
         // One that has to make way waits, too, although the round decides no more of it.
         let waits = |robot: &u32, member: &Member| ledger.territory().contains(member.end()) && !moving.contains(robot);
         let waiting = ledger.members().iter().filter(|(robot, member)| stands(robot).is_some() && waits(robot, member));
         for (robot, member) in waiting {
-            let still = self.0.entry(*robot).or_insert(Standstill { granted: member.granted, rounds: 0 });
+            let still = self.robots.entry(*robot).or_insert(Standstill { granted: member.granted, rounds: 0 });
             still.rounds = still.rounds.saturating_add(1);
         }
         let mut found: Vec<Deadlock> = Vec::new();
-        let stuck = self.0.keys().filter(|robot| self.is_stuck(**robot));
+        if self.robots.values().all(|still| still.rounds < STANDING_STILL) {
+            return found;
+        }
+        self.bound = STANDING_STILL.max(longest_move().saturating_mul(MOVES));
+        let stuck = self.robots.keys().filter(|robot| self.is_stuck(**robot));
         for deadlock in stuck.filter_map(|robot| self.deadlock_of(*robot, ledger, ground, moving)) {
             if found.iter().all(|one| one.first() != deadlock.first()) {
                 found.push(deadlock);
@@ -50,11 +67,11 @@ impl StandingStill {
 
     /// True if no robot stands still.
     pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.robots.is_empty()
     }
 
     fn is_stuck(&self, robot: u32) -> bool {
-        self.0.get(&robot).is_some_and(|still| still.rounds >= STANDING_STILL)
+        self.robots.get(&robot).is_some_and(|still| still.rounds >= self.bound)
     }
 
     /// The deadlock that a robot is in, or waits for; `None` if a robot in its way can still go on, is in a maneuver,

@@ -17,6 +17,7 @@ mod memory;
 mod passage;
 mod plan;
 mod properties;
+mod spoken;
 mod territories;
 
 #[cfg(test)]

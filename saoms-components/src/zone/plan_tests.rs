@@ -125,7 +125,7 @@ fn is_deadlock_behind(rank: u64, moving: &[u32]) -> bool {
     let mut found = Vec::new();
     for _ in 0..100 {
         site.round();
-        found = standing_still.count(&site.ledger, &mut site.ground, &moving);
+        found = standing_still.count(&site.ledger, &mut site.ground, &moving, || 0);
     }
     !found.is_empty()
 }
@@ -149,7 +149,7 @@ fn deadlocks(map: &str, width: u32, ways: &[(Block, Block)]) -> Vec<String> {
     for _ in 0..50 {
         site.round();
         robots.iter().for_each(|robot| site.arrive(*robot));
-        found = standing_still.count(&site.ledger, &mut site.ground, &BTreeSet::new());
+        found = standing_still.count(&site.ledger, &mut site.ground, &BTreeSet::new(), || 0);
     }
     found.iter().map(ToString::to_string).collect()
 }
