@@ -1,11 +1,14 @@
 //! The invariants of a fleet of robots: what holds in each run, whatever becomes of messages and components.
 //!
 //! 1. No two robots are in a block. 2. No two robots exchange their blocks. 3. A move is one block, to a free
-//!    neighbour. 4. A piece of luggage is delivered exactly once. 5. No battery is empty away from a charger. 6. No
+//!    neighbour. 4. A piece of luggage is where it was put, on exactly one robot, or delivered, which happens once. 5. No battery is empty away from a charger. 6. No
 //!    robot with a job stands still for ever. 7. Once faults are over, each request is finished. 8. The luggage of a
 //!    broken robot is taken over. 9, that the same seed has the same trace, is judged by whoever runs a seed twice.
 
+mod bearers;
+mod floor;
 mod luggage;
+mod passage;
 mod robots;
 mod strain;
 mod tide;
@@ -14,17 +17,19 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_api::event::fault::{FaultCall, FaultKind};
+use saoms_api::event::fault::{FaultCall, FaultKind, is_named};
 use saoms_api::extension::{
     ConcernedComponent, Counts, InvariantsRegistration, Measure, RunEnd, RunInvariants, Violation, submit,
 };
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
 use crate::messages::{
-    AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, DRAIN, EVENT_LUGGAGE, FAULT, OUTAGE, POSITION, REMOVAL,
+    AREA, ASSIGNMENT, COLLISION, CRITICAL_SITUATION, DRAIN, EVENT_LUGGAGE, FAULT, HANDLING, OUTAGE, POSITION, REMOVAL,
     ROBOT_LIST, SLOW, TERRITORY, carries,
 };
+use bearers::Bearers;
 use luggage::Pieces;
+use passage::{Passage, Passages};
 use robots::Robots;
 use tide::Tide;
 
@@ -34,6 +39,7 @@ pub(crate) const ONE_IN_A_BLOCK: &str = "1 no two robots in a block";
 pub(crate) const NO_SWAP: &str = "2 no two robots exchange their blocks";
 pub(crate) const MOVES: &str = "3 a move is one block to a free neighbour";
 pub(crate) const ONCE: &str = "4 luggage is delivered exactly once";
+pub(crate) const ONE_PLACE: &str = "4 luggage is at its place, on one robot, or delivered";
 pub(crate) const BATTERY: &str = "5 no battery is empty away from a charger";
 pub(crate) const NO_DEADLOCK: &str = "6 no robot with a job stands still for ever";
 pub(crate) const FINISHED: &str = "7 requests are finished once faults are over";
@@ -50,10 +56,12 @@ const LOOK: Duration = Duration::from_secs(1);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Content {
     Area,
+    Territory,
     Position,
     Robot,
     Luggage,
     Collision,
+    Handling,
     Fault,
     Removal,
     Critical,
@@ -67,6 +75,8 @@ enum Content {
 #[derive(Default)]
 struct FleetInvariants {
     topics: HashMap<String, (String, Content)>,
+    /// Topics without whose messages robots do not get on.
+    passages: Vec<(String, Passage)>,
     sites: BTreeMap<String, Site>,
     /// Of all sites.
     tide: Tide,
@@ -81,6 +91,8 @@ struct FleetInvariants {
 struct Site {
     robots: Robots,
     pieces: Pieces,
+    bearers: Bearers,
+    passages: Passages,
     /// True if its world is of this program, which counts what is delivered then.
     has_world: bool,
     /// True if its world or a zone has crashed or failed for good: without it no robot moves.
@@ -104,10 +116,12 @@ impl Finder<'_> {
 fn content(declared: &TopicDeclaration<'_>) -> Option<Content> {
     Some(match declared {
         one if carries(one, &AREA) => Content::Area,
+        one if carries(one, &TERRITORY) => Content::Territory,
         one if carries(one, &POSITION) => Content::Position,
         one if carries(one, &ROBOT_LIST) => Content::Robot,
         one if carries(one, &EVENT_LUGGAGE) => Content::Luggage,
         one if carries(one, &COLLISION) => Content::Collision,
+        one if carries(one, &HANDLING) => Content::Handling,
         one if carries(one, &FAULT) => Content::Fault,
         one if carries(one, &REMOVAL) => Content::Removal,
         one if carries(one, &CRITICAL_SITUATION) => Content::Critical,
@@ -144,6 +158,7 @@ impl FleetInvariants {
 
 impl RunInvariants for FleetInvariants {
     fn wants_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
+        self.passages.extend(Passage::of(declared).map(|passage| (name.to_owned(), passage)));
         let Some(content) = content(declared) else { return false };
         self.topics.insert(name.to_owned(), (site_of(name).to_owned(), content));
         true
@@ -158,16 +173,20 @@ impl RunInvariants for FleetInvariants {
         let at = message.header().sent;
         let state = self.sites.entry(site.clone()).or_default();
         let mut finder = Finder { site, at, found: &mut self.found };
-        let Site { robots, pieces, has_world, has_stopped } = state;
+        let Site { robots, pieces, bearers, passages, has_world, has_stopped } = state;
         match content {
+            Content::Territory => passages.has_zones = true,
             Content::Area => {
                 *has_world = true;
+                bearers.begin(message);
                 robots.hear_area(message);
             }
-            Content::Position => robots.hear_position(message, &mut finder),
-            Content::Robot => robots.hear_state(message, &self.tide.at_site(*has_stopped), &mut finder),
+            Content::Position => robots.hear_position(message, *has_world, &mut finder),
+            Content::Robot => robots.hear_state(message, *has_stopped || passages.are_kept(at), &mut finder),
             Content::Collision => robots::hear_collision(message, &mut finder),
+            Content::Handling => bearers.hear(message, &mut finder),
             Content::Luggage => {
+                bearers.hear_request(message);
                 robots.hear_luggage(message, at);
                 pieces.hear(message, self.goes_on, &mut finder);
             }
@@ -195,6 +214,17 @@ impl RunInvariants for FleetInvariants {
 
     fn fault(&mut self, at: Time, call: &FaultCall, concerned: &[ConcernedComponent]) {
         self.tide.begin(at, call);
+        if call.kind.is_of_messages() {
+            let is_meant = |topic: &str| call.topic.as_ref().is_none_or(|word| is_named(&word.text, topic));
+            for (topic, passage) in self.passages.iter().filter(|(topic, _)| is_meant(topic)) {
+                let site = self.sites.entry(site_of(topic).to_owned()).or_default();
+                site.passages.begin(*passage, at, call);
+            }
+        }
+        for topic in concerned.iter().flat_map(|one| &one.publishes).filter(|topic| passage::needs(&topic.message)) {
+            let site = self.sites.entry(site_of(&topic.name).to_owned()).or_default();
+            site.passages.begin_of_component(at, call);
+        }
         let ends = |one: &&ConcernedComponent| match call.kind {
             FaultKind::Crash { restart } => restart.is_none(),
             FaultKind::Fail => !one.restarts,
@@ -214,7 +244,7 @@ impl RunInvariants for FleetInvariants {
         self.look(at);
         let is_cut_off = end == RunEnd::CutOff;
         let (mut delivered, mut reported, mut requested, mut waits) = (0, 0, 0, Vec::new());
-        for (site, Site { robots, pieces, has_world, has_stopped }) in &mut self.sites {
+        for (site, Site { robots, pieces, has_world, has_stopped, .. }) in &mut self.sites {
             let mut finder = Finder { site, at, found: &mut self.found };
             pieces.end(is_cut_off, &self.tide.at_site(*has_stopped), robots.longest_period(), &mut finder);
             delivered += pieces.delivered();

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use saoms_api::Time;
-use saoms_api::host::SharedMessage;
+use saoms_api::host::{FIRST_ELSEWHERE, SharedMessage};
 
+use super::floor::Floor;
 use super::strain::{Outages, Supply};
 use super::tide::Tide;
 use super::{BATTERY, Finder, MOVES, NO_DEADLOCK, NO_SWAP, ONE_IN_A_BLOCK, bound};
@@ -21,6 +22,8 @@ pub(super) struct Robots {
     map: Option<Map>,
     all: BTreeMap<u32, Robot>,
     outages: Outages,
+    /// Who holds which blocks, where no world tells of collisions.
+    floor: Floor,
 }
 
 #[derive(Debug, Default)]
@@ -70,15 +73,21 @@ impl Robots {
         self.all.values().map(|robot| robot.period).max().unwrap_or_default()
     }
 
-    pub(super) fn hear_position(&mut self, message: &SharedMessage, finder: &mut Finder<'_>) {
+    /// The position of a robot. Without a world it also says who holds its blocks, unless it may be late, as one of
+    /// another program.
+    pub(super) fn hear_position(&mut self, message: &SharedMessage, has_world: bool, finder: &mut Finder<'_>) {
         let Some(Position { robot: number, block, next, .. }) = message.get::<Position>().cloned() else { return };
         let robot = self.all.entry(number).or_default();
         if robot.gone.is_some() {
             return;
         }
+        if !has_world && message.header().sender < FIRST_ELSEWHERE {
+            self.floor.hear(number, block, next, finder);
+        }
         let before = robot.block.replace(block);
         if before != Some(block) {
             (robot.moved, robot.stands_still) = (finder.at, false);
+            robot.supply.note_move();
         }
         let is_blocked = |block: Block| self.map.as_ref().is_some_and(|map| !map.is_free(block));
         if let Some(before) = before.filter(|before| before.distance(block) > 1) {
@@ -90,7 +99,8 @@ impl Robots {
         }
     }
 
-    pub(super) fn hear_state(&mut self, message: &SharedMessage, tide: &Tide, finder: &mut Finder<'_>) {
+    /// The state of a robot, which faults may keep from its grants.
+    pub(super) fn hear_state(&mut self, message: &SharedMessage, is_kept: bool, finder: &mut Finder<'_>) {
         let Some(state) = message.get::<RobotList>() else { return };
         let robot = self.all.entry(state.robot).or_default();
         robot.period = state.period;
@@ -99,15 +109,14 @@ impl Robots {
         if state.active && robot.gone.is_none() {
             robot.is_out = false;
         }
-        if robot.supply.hear(state, (finder.at, robot.moved), tide, &self.outages) {
+        if robot.supply.hear(state, (finder.at, robot.moved), is_kept, &self.outages) {
             (robot.charged, robot.stands_still) = (finder.at, false);
         }
         // One whose battery is empty may say in the same breath that it works no more.
         let was_active = std::mem::replace(&mut robot.is_active, state.active);
         let is_empty = (state.active || was_active) && state.is_out_of_battery();
-        // Under a fault that has lasted for long, it could not go to its charger.
-        let is_fault = tide.calm(Time::START, finder.at).is_none() || robot.supply.is_excused();
-        if is_empty && !robot.is_empty && !is_fault {
+        let is_excused = || robot.supply.is_excused(robot.block.unwrap_or(state.block).distance(state.charger));
+        if is_empty && !robot.is_empty && !is_excused() {
             finder.note(BATTERY, format!("the battery of robot {} is empty, and it is not at a charger", state.robot));
         }
         robot.is_empty = is_empty;
@@ -164,12 +173,13 @@ impl Robots {
         }
     }
 
-    fn put_out(&mut self, robot: u32, is_gone: bool) {
-        let Some(robot) = self.all.get_mut(&robot) else { return };
+    fn put_out(&mut self, number: u32, is_gone: bool) {
+        let Some(robot) = self.all.get_mut(&number) else { return };
         (robot.is_out, robot.job) = (true, None);
         if is_gone {
             // Where it comes back it is put down.
             robot.block = None;
+            self.floor.leave(number);
         }
     }
 

@@ -1,16 +1,12 @@
-//! What excuses an empty battery: a fault drains it, takes the charger of its robot, or keeps the robot from its way.
+//! What excuses an empty battery: a fault drains it, takes the charger of its robot, or keeps the robot from its grants
+//! for longer than its battery lasts.
 
 use saoms_api::Time;
 use saoms_api::host::SharedMessage;
 
 use super::robots::Robots;
-use super::tide::Tide;
 use crate::grid::Block;
 use crate::messages::{Drain, Outage, RobotList, Slow, end_of};
-
-/// What a robot loses where faults keep it at its block, in percent of its battery, from which on they are why the
-/// battery is empty.
-const KEPT: f64 = 10.0;
 
 /// The battery of a robot, as it says.
 #[derive(Debug, Default)]
@@ -19,8 +15,11 @@ pub(super) struct Supply {
     level: f64,
     /// When that was said.
     said: Time,
-    /// What it has lost at blocks where faults kept it, since it was charged, in percent.
+    /// What it has lost since it was charged at blocks where faults kept it from its grants, in percent.
     kept: f64,
+    /// What else it has lost since then, and the number of blocks that it has entered.
+    used: f64,
+    moves: u32,
     /// The end of the faults that drain it or took its charger since it was charged; the inner `None` is never.
     strained: Option<Option<Time>>,
 }
@@ -34,12 +33,18 @@ impl Supply {
         });
     }
 
-    /// Notes what the robot says. `moved` is when it entered its block. True if its battery has gained.
+    /// Notes that the robot entered a block.
+    pub(super) fn note_move(&mut self) {
+        self.moves = self.moves.saturating_add(1);
+    }
+
+    /// Notes what the robot says, which faults may keep from its grants. `moved` is when it entered its block. True if
+    /// its battery has gained.
     pub(super) fn hear(
         &mut self,
         state: &RobotList,
         (at, moved): (Time, Time),
-        tide: &Tide,
+        is_kept: bool,
         outages: &Outages,
     ) -> bool {
         let gains = state.battery > self.level;
@@ -47,18 +52,22 @@ impl Supply {
             self.strain(until);
         }
         if gains {
-            self.kept = 0.0;
+            (self.kept, self.used, self.moves) = (0.0, 0.0, 0);
             self.strained = self.strained.filter(|until| until.is_none_or(|until| at < until));
-        } else if moved <= self.said && tide.calm(Time::START, at).is_none() {
+        } else if is_kept && moved <= self.said {
             self.kept += self.level - state.battery;
+        } else {
+            self.used += self.level - state.battery;
         }
         (self.level, self.said) = (state.battery, at);
         gains
     }
 
-    /// True if faults are why the battery is empty.
-    pub(super) fn is_excused(&self) -> bool {
-        self.strained.is_some() || self.kept >= KEPT
+    /// True if faults are why the battery is empty so many blocks from its charger: they drained it, or took the charger,
+    /// or what it lost while they kept the robot would have lasted for these blocks, as it drove before.
+    pub(super) fn is_excused(&self, blocks: u32) -> bool {
+        let needed = self.used / f64::from(self.moves.max(1)) * f64::from(blocks);
+        self.strained.is_some() || self.kept > 0.0 && self.kept >= needed
     }
 }
 

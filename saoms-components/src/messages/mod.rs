@@ -2,6 +2,7 @@
 //! publishes and reads it, and with its validation.
 
 mod environment;
+mod handling;
 mod jobs;
 mod movement;
 mod passage;
@@ -13,6 +14,7 @@ use saoms_api::host::TopicDeclaration;
 use saoms_api::{Message, Topic};
 
 pub use environment::*;
+pub use handling::*;
 pub use jobs::*;
 pub use movement::*;
 pub use passage::*;

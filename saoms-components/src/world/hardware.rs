@@ -6,7 +6,7 @@ use super::World;
 use super::luggage::HandlingOutcome;
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Area, Hardware, Progress};
-use crate::messages::{Collision, Removal};
+use crate::messages::{Collision, Handling, HandlingKind, Removal};
 
 impl World {
     fn begin_move(&mut self, context: &mut Context<'_>, robot: u32, to: Block) -> Result<Progress, Failure> {
@@ -51,6 +51,7 @@ impl World {
         let lies_on = |other: u32| {
             (referee.is_retired(other) || referee.has_entered_again(other)) && referee.block(other) == Ok(block)
         };
+        let other = self.stock.bearer(action.luggage).filter(|_| action.kind == ActionKind::Collect);
         let result = match action.kind {
             ActionKind::Collect => self.stock.collect(action.luggage, robot, block, lies_on),
             _ => self.stock.deposit(action.luggage, robot, block),
@@ -61,9 +62,14 @@ impl World {
                 return Ok(Progress::Running);
             }
             Ok(HandlingOutcome::Delivered { given_up }) => {
+                self.tell(context, (robot, HandlingKind::Delivered, block), None, &[action.luggage])?;
                 self.count_delivery(context, given_up);
             }
-            Ok(HandlingOutcome::Handled) => {}
+            Ok(HandlingOutcome::Handled) => {
+                let is_collected = action.kind == ActionKind::Collect;
+                let kind = if is_collected { HandlingKind::Collected } else { HandlingKind::PutDown };
+                self.tell(context, (robot, kind, block), other, &[action.luggage])?;
+            }
             Err(reason) => {
                 warn!(context, "robot {robot} at {block}: {reason}");
                 self.referee.end_handling(robot, Progress::Failed);
@@ -74,11 +80,24 @@ impl World {
         Ok(Progress::Done)
     }
 
+    /// Says what a robot did with pieces at a block, and from which other robot it took them.
+    pub(super) fn tell(
+        &self,
+        context: &mut Context<'_>,
+        (robot, kind, block): (u32, HandlingKind, Block),
+        other: Option<u32>,
+        pieces: &[u32],
+    ) -> Result<(), Failure> {
+        let other = other.unwrap_or(0);
+        let told = pieces.iter().map(|luggage| Handling { luggage: *luggage, robot, kind, block, other });
+        told.into_iter().try_for_each(|handling| context.send(&self.handlings, handling))
+    }
+
     /// The robot has begun anew: what it carries it does not know of, so that it lies where it is.
     fn unload_if_forgotten(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
         if self.referee.has_forgotten(robot) {
             let block = self.referee.block(robot)?;
-            let (delivered, luggage) = self.put_down(context, robot, block);
+            let (delivered, luggage) = self.put_down(context, robot, block)?;
             if !delivered.is_empty() || !luggage.is_empty() {
                 let since = context.now();
                 let block = Some(block);
@@ -96,7 +115,8 @@ impl Hardware for World {
         let block = self.referee.enter(robot, name, block, context.now())?;
         if was_retired && self.referee.has_forgotten(robot) {
             // Its luggage lies where other robots look for it.
-            self.stock.unload(robot, block);
+            let unloaded = self.stock.unload(robot, block);
+            self.tell(context, (robot, HandlingKind::PutDown, block), None, &unloaded)?;
         }
         Ok(block)
     }

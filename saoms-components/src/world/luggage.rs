@@ -112,6 +112,14 @@ impl Stock {
         true
     }
 
+    /// The robot that carries a piece.
+    pub(super) fn bearer(&self, luggage: u32) -> Option<u32> {
+        match self.pieces.get(&luggage)?.place {
+            PiecePosition::On(robot) => Some(robot),
+            PiecePosition::At(_) => None,
+        }
+    }
+
     /// True if a piece lies on the block.
     pub(super) fn lies_at(&self, luggage: u32, block: Block) -> bool {
         self.pieces.get(&luggage).is_some_and(|piece| piece.place == PiecePosition::At(block))

@@ -19,8 +19,8 @@ use saoms_api::{Cause, Class, Component, Context, Failure, Publisher, ReportValu
 use crate::hardware::Hardware;
 use crate::messages::{
     AREA, COLLISION, Collision, DRAIN, Drain, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
-    FaultKind, LuggageStage, OUTAGE, Outage, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal, RobotList, SLOW, Slow,
-    is_visit,
+    FaultKind, HANDLING, Handling, LuggageStage, OUTAGE, Outage, REMOVAL, REMOVAL_ASKED, ROBOT_LIST, Removal,
+    RobotList, SLOW, Slow, is_visit,
 };
 use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem};
@@ -69,6 +69,8 @@ pub struct World {
     outages: Subscription<Outage>,
     #[publishes(COLLISION)]
     collisions: Publisher<Collision>,
+    #[publishes(HANDLING)]
+    handlings: Publisher<Handling>,
     #[publishes(REMOVAL)]
     removals: Publisher<Removal>,
     #[subscribes(REMOVAL_ASKED)]
@@ -103,6 +105,7 @@ impl Component for World {
             drained: Subscription::default(),
             outages: Subscription::default(),
             collisions: Publisher::default(),
+            handlings: Publisher::default(),
             removals: Publisher::default(),
             removals_asked: Subscription::default(),
             left: BTreeMap::new(),

@@ -5,7 +5,7 @@ use saoms_api::{Context, Failure, Time, record, warn};
 use super::World;
 use super::luggage::HandlingOutcome;
 use crate::grid::Block;
-use crate::messages::{Fault, FaultKind, Removal};
+use crate::messages::{Fault, FaultKind, HandlingKind, Removal};
 
 impl World {
     /// Somebody took a robot off the floor, at this time.
@@ -19,7 +19,7 @@ impl World {
         let (block, delivered, luggage) = match self.referee.remove(robot) {
             Ok(None) => return Ok(()),
             Ok(Some(block)) => {
-                let (delivered, luggage) = self.put_down(context, robot, block);
+                let (delivered, luggage) = self.put_down(context, robot, block)?;
                 context.count("robots.gone", 1);
                 context.effect(record!(frees_block: "robot {robot} is gone: {block} is free", robot, block));
                 warn!(context, "{fault}: {block} is free");
@@ -32,14 +32,22 @@ impl World {
 
     /// A robot lets go of what it carries: what is at its destination there is delivered. Returns the numbers of these
     /// pieces, and those of the others.
-    pub(super) fn put_down(&mut self, context: &mut Context<'_>, robot: u32, block: Block) -> (Vec<u32>, Vec<u32>) {
+    pub(super) fn put_down(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        block: Block,
+    ) -> Result<(Vec<u32>, Vec<u32>), Failure> {
         let delivered = self.stock.carried_to(robot, block);
         for luggage in &delivered {
             if let Ok(HandlingOutcome::Delivered { given_up }) = self.stock.deposit(*luggage, robot, block) {
                 self.count_delivery(context, given_up);
             }
         }
-        (delivered, self.stock.unload(robot, block))
+        let unloaded = self.stock.unload(robot, block);
+        self.tell(context, (robot, HandlingKind::Delivered, block), None, &delivered)?;
+        self.tell(context, (robot, HandlingKind::PutDown, block), None, &unloaded)?;
+        Ok((delivered, unloaded))
     }
 
     /// The component of a robot failed, and lost what it knew: the robot is stopped where it is, and others can take
@@ -50,7 +58,7 @@ impl World {
             Ok(is_out) => {
                 let block = self.referee.block(robot)?;
                 let (delivered, luggage) = match is_out || self.referee.has_forgotten(robot) {
-                    true => self.put_down(context, robot, block),
+                    true => self.put_down(context, robot, block)?,
                     false => (Vec::new(), Vec::new()),
                 };
                 context

@@ -1,3 +1,4 @@
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use saoms_api::Time;
@@ -12,11 +13,12 @@ use crate::report::{RunReport, RunStatus};
 /// Without any, it finds nothing.
 pub struct InvariantWatch {
     all: Mutex<Vec<Box<dyn RunInvariants>>>,
+    checks: AtomicU64,
 }
 
 impl Default for InvariantWatch {
     fn default() -> InvariantWatch {
-        InvariantWatch { all: Mutex::new(InvariantsRegistration::linked()) }
+        InvariantWatch { all: Mutex::new(InvariantsRegistration::linked()), checks: AtomicU64::new(0) }
     }
 }
 
@@ -41,6 +43,11 @@ impl InvariantWatch {
         self.all().iter_mut().flat_map(|one| one.violations()).collect()
     }
 
+    /// Number of messages that were judged.
+    pub fn checks(&self) -> u64 {
+        self.checks.load(Ordering::Relaxed)
+    }
+
     /// What the run came to, after its end.
     pub fn measures(&self) -> Vec<Measure> {
         self.all().iter().flat_map(|one| one.measures()).collect()
@@ -58,6 +65,7 @@ impl Observer for InvariantWatch {
     }
 
     fn message(&self, sent: &SentMessage) {
+        self.checks.fetch_add(1, Ordering::Relaxed);
         self.all().iter_mut().for_each(|one| one.message(&sent.topic, &sent.message));
     }
 

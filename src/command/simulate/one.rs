@@ -36,6 +36,9 @@ pub(super) struct SeedResult {
     pub(super) standstill: Option<String>,
     pub(super) time_s: f64,
     pub(super) periods: u64,
+    /// Number of messages that the invariants judged.
+    #[serde(default)]
+    pub(super) checks: u64,
     pub(super) trace_hash: Option<String>,
     /// How often each kind of fault was applied.
     pub(super) faults: BTreeMap<String, u64>,
@@ -154,6 +157,7 @@ impl Simulation {
             standstill: report.standstill.filter(|one| one.ends).map(|one| one.to_string()),
             time_s: report.time_s,
             periods: report.periods,
+            checks: watch.checks(),
             trace_hash: report.trace_hash,
             faults,
             measures,

@@ -12,7 +12,7 @@ use super::one::{SAME_TRACE, SeedResult, Simulation};
 use super::shrink::shrunk;
 use crate::arguments::FleetArguments;
 
-/// The most failing seeds that are shown, and whose faults are shrunk.
+/// The most failing seeds that the table shows, and whose faults are shrunk.
 const MOST_SHOWN: usize = 20;
 const MOST_SHRUNK: usize = 5;
 
@@ -69,7 +69,7 @@ impl Table {
         simulation: &Simulation,
     ) -> Table {
         let failing = results.iter().filter(|result| !result.is_clean()).enumerate();
-        let replays = failing.take(MOST_SHOWN).map(|(place, result)| {
+        let replays = failing.map(|(place, result)| {
             let faults = (place < MOST_SHRUNK).then(|| shrunk(simulation, result)).flatten();
             let faults = faults.map(|events| events.iter().map(|event| event.line()).collect());
             Replay { seed: result.seed, command: replay(arguments, fleet, result), faults }
@@ -138,6 +138,10 @@ impl Table {
         self.results.iter().map(|result| result.periods).sum()
     }
 
+    fn checks(&self) -> u64 {
+        self.results.iter().map(|result| result.checks).sum()
+    }
+
     pub(super) fn json(&self) -> Value {
         let figures = self.figures().into_iter().map(|(name, sum)| {
             let value = match sum.of {
@@ -155,6 +159,7 @@ impl Table {
             "took_s": self.took.as_secs_f64(),
             "simulated_s": self.simulated(),
             "periods": self.periods(),
+            "checks": self.checks(),
             "runs": self.statuses(),
             "figures": figures.collect::<serde_json::Map<String, Value>>(),
             "faults": self.faults(),
@@ -222,6 +227,7 @@ impl Table {
         let hours = self.simulated() / 3600.0;
         let time = format!("{hours:.1} h simulated in {:.1} s, {} executions", self.took.as_secs_f64(), self.periods());
         row(formatter, "time", &time)?;
+        row(formatter, "checks", &format!("{} messages held to the invariants", self.checks()))?;
         let statuses = self.statuses().into_iter().map(|(status, count)| format!("{status} {count}"));
         row(formatter, "runs", &listed(statuses.collect()))
     }
@@ -242,7 +248,7 @@ impl Table {
             row(formatter, "violations", &format!("{count} in {seeds} seeds: {name}"))?;
         }
         let failing = self.results.iter().filter(|result| !result.is_clean());
-        for (result, replay) in failing.clone().zip(&self.replays) {
+        for (result, replay) in failing.clone().zip(&self.replays).take(MOST_SHOWN) {
             let Some(first) = result.violations.first() else { continue };
             writeln!(formatter, "\nseed {}: [{:.3} s] {}: {}", result.seed, first.at_s, first.invariant, first.text)?;
             if let Some(standstill) = &result.standstill {
@@ -258,7 +264,7 @@ impl Table {
                 }
             }
         }
-        let hidden = failing.count().saturating_sub(self.replays.len());
+        let hidden = failing.count().saturating_sub(MOST_SHOWN);
         if hidden > 0 {
             writeln!(formatter, "\n{hidden} more seeds with violations: `--report json` has all")?;
         }

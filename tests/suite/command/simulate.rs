@@ -7,9 +7,10 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
+use expect_test::expect;
 use serde_json::Value;
 
-use crate::support::{PROGRAM, command, empty_folder, root, saoms_in, stdout};
+use crate::support::{PROGRAM, command, empty_folder, root, saoms, saoms_in, stdout};
 
 fn simulate(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
     let composite = root().join("composites/airport.composite");
@@ -98,6 +99,34 @@ fn a_storm_harms_no_fleet_with_zones() {
         delivered.1 += pieces["of"].as_f64().unwrap();
     }
     assert!(delivered.0 >= 0.99 * delivered.1 && delivered.1 >= 24.0 * 195.0, "{delivered:?}");
+}
+
+/// Events that are lost for good cost work, and nothing else: invariants 7 and 8 need not hold then.
+#[test]
+fn events_that_are_lost_for_good_lead_to_no_collision_and_no_second_delivery() {
+    let folder = empty_folder("simulate-violate");
+    let composite = root().join("composites/storm.composite");
+    let storm = fs::read_to_string(root().join("composites/storm.txt")).unwrap();
+    fs::write(folder.join("faults.txt"), format!("at 1s for 60s violate 20 %\n{storm}")).unwrap();
+    let arguments = ["--faults", "faults.txt", "--seeds", "20", "--report", "json"];
+    let (_, told, progress) = simulate_file(&folder, composite.to_str().unwrap(), &arguments);
+    let report: Value = serde_json::from_str(&told).unwrap_or_else(|_| panic!("{told}{progress}"));
+    assert!(report["faults"]["violate"].as_u64().unwrap() >= 20, "{}", report["faults"]);
+    let violated = report["violations"].as_object().unwrap();
+    assert!(violated.keys().all(|name| name.starts_with("7 ") || name.starts_with("8 ")), "{violated:?}");
+}
+
+/// The run is the same on every machine, debug and release. What changes the acts of fleets changes its hash, too:
+/// `UPDATE_EXPECT=1` writes it anew.
+#[test]
+fn a_run_in_a_storm_is_the_same_everywhere() {
+    let storm = ["composites/storm.composite", "--faults", "composites/storm.txt", "--for", "40s"];
+    let run = ["run", "--virtual", "--seed", "1", "--quiet", "--report", "-"];
+    let output = saoms(&[&run[..], &storm].concat());
+    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let faults = &report["faults"]["applied"];
+    assert!(["lose", "delay", "duplicate"].iter().all(|kind| faults[kind].as_u64() > Some(1000)), "{faults}");
+    expect![["9e9d068c83587e0d"]].assert_eq(report["trace_hash"].as_str().unwrap());
 }
 
 /// Zones answered so late that no full battery lasted with the reserve for that: robots went between their own charger
