@@ -14,6 +14,7 @@ use super::scenario::line::{read_outside, split};
 use super::scenario::{Before, Vocabulary};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
+use crate::rules::masters::judge_end;
 use crate::rules::peers::judge_disturbance;
 use crate::rules::scenario::{judge_luggage, judge_outage, judge_robot, no_work};
 use crate::rules::worlds::judge_crash;
@@ -175,7 +176,8 @@ fn judge(fleet: &FleetView<'_>, events: &Events, line: &str) -> Result<(), LineF
             .and_then(|()| judge_luggage(fleet, &read.event))
             .and_then(|()| judge_disturbance(fleet, &read.event, read.bytes.clone()));
         judged.map_err(|fault| fault.moved(offset))?;
-        let crash = judge_crash(fleet, &read.event, read.bytes.clone());
+        let crash = judge_crash(fleet, &read.event, read.bytes.clone())
+            .and_then(|()| judge_end(fleet, &read.event, read.bytes.clone()));
         warned = warned.and(crash.map_err(|fault| fault.moved(offset)));
     }
     warned

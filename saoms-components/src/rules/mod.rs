@@ -12,7 +12,7 @@ mod divided;
 mod environments;
 mod hearing;
 mod map;
-mod masters;
+pub(crate) mod masters;
 mod missing_loop;
 mod number;
 pub(crate) mod peers;
@@ -57,4 +57,5 @@ saoms_api::fleet_rules!(
     sustain::crowded::RULE,
     zones::nodes::RULE,
     worlds::forgets::RULE,
+    masters::ENDS,
 );

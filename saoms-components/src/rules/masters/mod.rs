@@ -1,5 +1,6 @@
 //! Rule: masters of the environment do not divide the luggage among them.
 
+mod ends;
 mod forgets;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +12,10 @@ use crate::master::{FIRST, MasterEnvironment};
 use crate::messages::{ENVIRONMENT, TERRITORY};
 use crate::zone::Zone;
 
+pub(super) use ends::RULE as ENDS;
 pub(super) use forgets::RULE as FORGETS;
+
+pub(crate) use ends::judge_end;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
