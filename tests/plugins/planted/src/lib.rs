@@ -1,4 +1,6 @@
-//! A robot that says of itself what must not be, for one invariant after the other.
+//! Robots that say of themselves what must not be, or do it, for one invariant after the other.
+
+mod greedy;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -6,8 +8,8 @@ use saoms_api::{Class, Component, Context, Failure, Own, Publisher};
 use saoms_components::grid::{Block, Map};
 use saoms_components::hardware::Area;
 use saoms_components::messages::{
-    AREA, CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, LuggageStage, POSITION,
-    Position, ROBOT_LIST, RobotList,
+    AREA, CRITICAL_SITUATION, CriticalKind, CriticalSituation, EVENT_LUGGAGE, EventLuggage, HANDLING, Handling,
+    LuggageStage, POSITION, Position, ROBOT_LIST, RobotList,
 };
 
 /// A robot with a bug, which shows itself with some seeds alone.
@@ -27,6 +29,8 @@ struct Planted {
     helps: Publisher<CriticalSituation>,
     #[publishes(AREA)]
     areas: Publisher<Area>,
+    #[publishes(HANDLING)]
+    handlings: Publisher<Handling>,
     /// The execution in which it does so.
     bad: Option<u64>,
 }
@@ -35,6 +39,12 @@ const ROBOT: u32 = 99;
 /// One of so many seeds has a bad execution, which is one of the first ones.
 const SEEDS: u64 = 5;
 const EXECUTIONS: u64 = 100;
+
+/// The execution from which on a component is bad, with the seeds of a run that have one.
+fn bad_execution(context: &mut Context<'_>) -> Option<u64> {
+    let (is_bad, at) = (context.chance().below(SEEDS) == 0, 2 + context.chance().below(EXECUTIONS));
+    is_bad.then_some(at)
+}
 
 fn says(stage: LuggageStage) -> EventLuggage {
     EventLuggage { robot: ROBOT, stage, ..EventLuggage::request(50, Block::new(1, 1), Block::new(2, 2)) }
@@ -46,8 +56,7 @@ impl Component for Planted {
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let now = context.execution();
         if now == 0 {
-            let (is_bad, at) = (context.chance().below(SEEDS) == 0, 2 + context.chance().below(EXECUTIONS));
-            self.bad = is_bad.then_some(at);
+            self.bad = bad_execution(context);
             context.send(&self.luggage, EventLuggage { robot: 0, ..says(LuggageStage::Request) })?;
         }
         let (is_bad, bug) = (self.bad == Some(now), self.bug.as_str());
@@ -73,6 +82,13 @@ impl Component for Planted {
         match bug {
             // It has delivered it before, as it says.
             "twice" if is_bad => context.send(&self.luggage, says(LuggageStage::Delivered)),
+            // As a world would say it that gives a piece to two robots, or to one that is elsewhere.
+            "bearers" | "elsewhere" if is_bad => {
+                let block = if bug == "elsewhere" { Block::new(3, 3) } else { Block::new(1, 1) };
+                let collected = |robot| Handling { luggage: 50, robot, block, ..Handling::default() };
+                context.send(&self.handlings, collected(ROBOT))?;
+                if bug == "bearers" { context.send(&self.handlings, collected(98)) } else { Ok(()) }
+            }
             "deadlock" if is_bad => context.send(&self.luggage, says(LuggageStage::Taken)),
             "broken" if is_bad => {
                 let critical = CriticalSituation {
@@ -95,4 +111,4 @@ impl Component for Planted {
     }
 }
 
-saoms_api::plugin! { classes: [Planted] }
+saoms_api::plugin! { classes: [Planted, greedy::Greedy] }
