@@ -73,6 +73,7 @@ pub(super) fn run(program: &Program) -> Outcome<()> {
         let fleet = handle.use_network(&url, &port, Alone);
         let member = exchange::Settings {
             program: u64::from(std::process::id()),
+            began: 0,
             name: name.clone(),
             patience: PATIENCE,
             limit: LIMIT,

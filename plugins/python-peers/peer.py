@@ -24,9 +24,9 @@ SENDS = message(topic="string", is_state="bool", last="uint64", oldest="uint64",
 READS = message(topic="string")
 RECEIVED = message(program="uint64", topic="string", next="uint64")
 WELCOME = message(reader="uint64", topic="string", first="uint64")
-ALIVE = message(program="uint64", origin="uint64", start="uint64", name="string", number="uint64", patience="uint64",
-                sends={"sequence": SENDS}, reads={"sequence": READS}, received={"sequence": RECEIVED},
-                welcomes={"sequence": WELCOME}, vote="uint8", leaves="bool")
+ALIVE = message(program="uint64", origin="uint64", start="uint64", began="uint64", name="string", number="uint64",
+                patience="uint64", sends={"sequence": SENDS}, reads={"sequence": READS},
+                received={"sequence": RECEIVED}, welcomes={"sequence": WELCOME}, vote="uint8", leaves="bool")
 AGAIN = message(reader="uint64", topic="string", first="uint64", last="uint64")
 COVERED = message(program="uint64", topic="string", first="uint64", last="uint64", numbers={"sequence": "uint64"})
 
@@ -86,7 +86,7 @@ class Incoming:
 class Peer:
     def __init__(self, url, name, topics, sends=(), reads=(), vote=SILENT):
         self.name, self.topics, self.reads, self.vote = name, topics, reads, vote
-        self.program, self.sign, self.was_done = random.getrandbits(62), 0, False
+        self.program, self.began, self.sign, self.was_done = random.getrandbits(62), time.time_ns(), 0, False
         self.outgoing = {topic: Outgoing(topics[topic][0]) for topic in sends}
         self.incoming = defaultdict(Incoming)  # by program and topic
         self.needs = {}  # by program and topic: the first number that the program lacks of this one
@@ -95,7 +95,7 @@ class Peer:
         self.session, self.own = join(url), f"{self.program:x}"
         keys = ["alive/*", f"ask/{self.own}", f"covered/{self.own}", f"again/{self.own}/*"]
         for key in keys + [f"topic/{topic}/**" for topic in reads]:
-            self.session.declare_subscriber("saoms/1/" + key, self.heard.put)
+            self.session.declare_subscriber("saoms/2/" + key, self.heard.put)
 
     def send(self, topic, value):
         (_, schema, schema_number), outgoing = self.topics[topic], self.outgoing[topic]
@@ -141,7 +141,7 @@ class Peer:
         self.session.close()
 
     def put(self, key, value, envelope=None):
-        self.session.put("saoms/1/" + key, value, attachment=envelope)
+        self.session.put("saoms/2/" + key, value, attachment=envelope)
 
     def say_alive(self, leaves=False):
         self.sign += 1
@@ -153,9 +153,9 @@ class Peer:
         received = [dict(program=program, topic=topic, next=one.next)
                     for (program, topic), one in self.incoming.items() if one.next]
         welcomes = [dict(reader=reader, topic=topic, first=first) for (reader, topic), first in self.needs.items()]
-        alive = dict(program=self.program, origin=self.program, start=0, name=self.name, number=self.sign,
-                     patience=int(PATIENCE * 1000), sends=sends, reads=[dict(topic=topic) for topic in self.reads],
-                     received=received, welcomes=welcomes, vote=self.vote, leaves=leaves)
+        alive = dict(program=self.program, origin=self.program, start=0, began=self.began, name=self.name,
+                     number=self.sign, patience=int(PATIENCE * 1000), sends=sends,
+                     reads=[dict(topic=topic) for topic in self.reads], received=received, welcomes=welcomes, vote=self.vote, leaves=leaves)
         self.put("alive/" + self.own, encode(ALIVE, alive))
 
     def ask(self):

@@ -15,7 +15,7 @@ def show(sample):
 
 
 session = join(url)
-session.declare_subscriber("saoms/1/topic/POSTOPIC/**", show)
+session.declare_subscriber("saoms/2/topic/POSTOPIC/**", show)
 print("listens", flush=True)
 while True:
     time.sleep(1)

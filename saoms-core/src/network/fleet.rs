@@ -39,6 +39,9 @@ pub trait Fleet: Send + 'static {
     /// Counts messages that are lost for good, and remembers what was told of the first: the run fails.
     fn count_lost(&self, count: u64, text: &str);
 
+    /// Ends the run as failed, for this reason.
+    fn fail(&self, reason: String);
+
     /// True if a signal has come that ends the run: nobody waits any longer than necessary.
     fn is_interrupted(&self) -> bool;
 

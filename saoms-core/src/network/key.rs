@@ -2,21 +2,21 @@
 //!
 //! | key | what is there |
 //! | --- | --- |
-//! | `saoms/1/topic/TOPIC/COMPONENT` | messages of components: CDR, with an [`Envelope`](super::exchange::wire::Envelope) beside it |
-//! | `saoms/1/topic/TOPIC/COMPONENT/X/Y` | the same of a state topic with places, that concern this cell of 16 by 16 blocks |
-//! | `saoms/1/alive/PROGRAM` | signs of life |
-//! | `saoms/1/begins/PROGRAM` | what this program says before its components begin |
-//! | `saoms/1/runs/PROGRAM` | answers to it: which of these run elsewhere |
-//! | `saoms/1/ask/PROGRAM` | requests to this program to send messages again |
-//! | `saoms/1/again/PROGRAM/TOPIC` | messages that this program asked for |
-//! | `saoms/1/covered/PROGRAM` | answers that say which states are outdated |
-//! | `saoms/1/look/PROGRAM` | requests to this program for the states of cells |
-//! | `saoms/1/around/PROGRAM/TOPIC` | answers to requests of this program |
-//! | `saoms/1/call/PROGRAM` | calls of its components |
-//! | `saoms/1/reply/PROGRAM` | answers to its calls |
-//! | `saoms/1/control/ASKER` | requests of operators to programs |
-//! | `saoms/1/controlled/ASKER` | answers to this one |
-//! | `saoms/1/access` | what the router lets users do |
+//! | `saoms/2/topic/TOPIC/COMPONENT` | messages of components: CDR, with an [`Envelope`](super::exchange::wire::Envelope) beside it |
+//! | `saoms/2/topic/TOPIC/COMPONENT/X/Y` | the same of a state topic with places, that concern this cell of 16 by 16 blocks |
+//! | `saoms/2/alive/PROGRAM` | signs of life |
+//! | `saoms/2/begins/PROGRAM` | what this program says before its components begin |
+//! | `saoms/2/runs/PROGRAM` | answers to it: which of these run elsewhere |
+//! | `saoms/2/ask/PROGRAM` | requests to this program to send messages again |
+//! | `saoms/2/again/PROGRAM/TOPIC` | messages that this program asked for |
+//! | `saoms/2/covered/PROGRAM` | answers that say which states are outdated |
+//! | `saoms/2/look/PROGRAM` | requests to this program for the states of cells |
+//! | `saoms/2/around/PROGRAM/TOPIC` | answers to requests of this program |
+//! | `saoms/2/call/PROGRAM` | calls of its components |
+//! | `saoms/2/reply/PROGRAM` | answers to its calls |
+//! | `saoms/2/control/ASKER` | requests of operators to programs |
+//! | `saoms/2/controlled/ASKER` | answers to this one |
+//! | `saoms/2/access` | what the router lets users do |
 //!
 //! A program is a number in hexadecimal digits. In names, whatever is not an ASCII letter, a digit, `-`, `_` or `.` is
 //! written as `%` and two hexadecimal digits for each byte of its UTF-8 form.
@@ -31,10 +31,10 @@ use super::transport::UserKeys;
 use crate::bus::Cell;
 
 /// What all keys begin with: the version of what is said.
-pub const PREFIX: &str = "saoms/1";
+pub const PREFIX: &str = "saoms/2";
 
 /// The version of what is said.
-pub const VERSION: &str = "1";
+pub const VERSION: &str = "2";
 
 /// The version of the program that put something under a key.
 pub fn version(key: &str) -> Option<&str> {

@@ -72,6 +72,13 @@ pub(super) fn told(news: &News, membership: &Membership, own: &str) -> (Level, S
                  receives them when this program starts again"
             ),
         ),
+        News::Superseded { component, name } => (
+            Level::Error,
+            format!(
+                "component `{component}` runs in program `{name}` by now, which began while this one was not heard: this one ends, \
+                 since a component runs once in a fleet"
+            ),
+        ),
         News::Twice { component, name, .. } => (
             Level::Error,
             format!(

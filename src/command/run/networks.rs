@@ -8,11 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use saoms_api::Level;
 use saoms_api::host::format_duration;
 use saoms_core::network::exchange::Settings;
+use saoms_core::network::exchange::wire::LARGEST_NUMBER;
 use saoms_core::network::rights::Granted;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession, peers};
 use saoms_core::network::{Client, Entry, Membership, Port, enter};
@@ -178,18 +179,23 @@ impl Networks {
             };
             let fleet = handle.use_network(&settings.url, &port, hooks);
             let program = RandomState::new().hash_one(std::process::id());
-            let member = Settings {
+            let date = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+            let memory = fleet.recall(program);
+            // The clock may have been set back since the last start.
+            let earlier = memory.as_ref().map_or(0, |memory| memory.start);
+            let mut member = Settings {
                 program,
+                began: u64::try_from(date).unwrap_or_default().max(earlier).min(LARGEST_NUMBER),
                 name: self.name.clone(),
                 patience: u64::try_from(self.patience.as_nanos()).unwrap_or(u64::MAX),
                 limit: self.backlog,
                 linger: u64::try_from(self.linger.as_nanos()).unwrap_or(u64::MAX),
                 components: components.clone(),
                 others,
-                memory: fleet.recall(program),
+                memory,
             };
             let tell = |text: String| handle.note(Level::Warning, text);
-            match enter(&session, &port, &member, tell, || signals.has_come()) {
+            match enter(&session, &port, &mut member, tell, || signals.has_come()) {
                 Ok(Entry::Free) => {}
                 Ok(Entry::Over) => break,
                 Err(why) => {

@@ -34,10 +34,10 @@ fn edge() -> impl Strategy<Value = u64> {
 
 fn key() -> impl Strategy<Value = String> {
     prop_oneof![
-        Just("saoms/1/alive/7".to_owned()),
-        Just("saoms/1/topic/NUMBERS/Sender1".to_owned()),
-        Just("saoms/1/topic/%F/%".to_owned()),
-        "saoms/1/(ask|again|covered)/[0-9a-f]{1,16}(/NUMBERS)?",
+        Just("saoms/2/alive/7".to_owned()),
+        Just("saoms/2/topic/NUMBERS/Sender1".to_owned()),
+        Just("saoms/2/topic/%F/%".to_owned()),
+        "saoms/2/(ask|again|covered)/[0-9a-f]{1,16}(/NUMBERS)?",
         "[a-z0-9/*%]{0,20}",
     ]
 }
@@ -53,6 +53,7 @@ fn alive() -> impl Strategy<Value = Vec<u8>> {
             program,
             origin: number[9] % 40,
             start: number[10],
+            began: number[10] % 40,
             name: "stranger".to_owned(),
             number: number[0],
             patience: number[1],
@@ -71,7 +72,7 @@ fn alive() -> impl Strategy<Value = Vec<u8>> {
             vote: if leaves { 2 } else { 0 },
             leaves,
         };
-        frame(0, &format!("saoms/1/alive/{program:x}"), &cdr::encode(&alive), &[])
+        frame(0, &format!("saoms/2/alive/{program:x}"), &cdr::encode(&alive), &[])
     })
 }
 
@@ -83,7 +84,7 @@ fn numbered() -> impl Strategy<Value = Vec<u8>> {
         let messages = vec![Enclosed { size, to: String::new(), key: 3, has_key, sent: 0, cause: number }];
         let envelope =
             Envelope { program, number, component: "Stranger".to_owned(), schema: 0, messages, cells: Vec::new() };
-        frame(0, &format!("saoms/1/topic/{topic}/Stranger"), &message, &cdr::encode(&envelope))
+        frame(0, &format!("saoms/2/topic/{topic}/Stranger"), &message, &cdr::encode(&envelope))
     })
 }
 
@@ -104,15 +105,15 @@ fn asked(program: u64, numbers: &[u64]) -> Vec<Vec<u8>> {
     let again = Again { reader: 3, topic, first, last };
     let covered = Covered { program: 3, topic: "PRESENT".to_owned(), first, last, numbers: numbers.to_vec() };
     vec![
-        frame(0, &format!("saoms/1/ask/{program:x}"), &cdr::encode(&again), &[]),
-        frame(0, &format!("saoms/1/covered/{program:x}"), &cdr::encode(&covered), &[]),
+        frame(0, &format!("saoms/2/ask/{program:x}"), &cdr::encode(&again), &[]),
+        frame(0, &format!("saoms/2/covered/{program:x}"), &cdr::encode(&covered), &[]),
     ]
 }
 
 /// The numbers of the programs that give a sign of life.
 fn programs_at(port: u16) -> Vec<u64> {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
-    stream.write_all(&frame(1, "saoms/1/alive/*", &[], &[])).unwrap();
+    stream.write_all(&frame(1, "saoms/2/alive/*", &[], &[])).unwrap();
     sleep(Duration::from_secs(1));
     stream.set_nonblocking(true).unwrap();
     let mut heard = vec![0; 1 << 20];
@@ -120,7 +121,7 @@ fn programs_at(port: u16) -> Vec<u64> {
     let heard = String::from_utf8_lossy(&heard[..size]).into_owned();
     let digits = |text: &str| text.chars().take_while(char::is_ascii_hexdigit).collect::<String>();
     let mut programs: Vec<u64> =
-        heard.split("saoms/1/alive/").skip(1).filter_map(|rest| u64::from_str_radix(&digits(rest), 16).ok()).collect();
+        heard.split("saoms/2/alive/").skip(1).filter_map(|rest| u64::from_str_radix(&digits(rest), 16).ok()).collect();
     programs.sort_unstable();
     programs.dedup();
     programs
@@ -166,15 +167,15 @@ fn a_program_of_another_version_is_told_once_and_not_heard() {
     let stream = TcpStream::connect(("127.0.0.1", programs.port)).unwrap();
     // It may subscribe a moment after it has joined.
     programs.wait("the reader says nothing of the other version", || {
-        (&stream).write_all(&frame(0, "saoms/2/alive/77", b"what no program of this version reads", &[])).unwrap();
-        reader.printed().contains("speaks version 2 of its language, and this one version 1")
+        (&stream).write_all(&frame(0, "saoms/1/alive/77", b"what no program of this version reads", &[])).unwrap();
+        reader.printed().contains("speaks version 1 of its language, and this one version 2")
     });
     programs.until(&reader, "build both from one version");
     let senders = senders(&programs, programs.port, &[("count", "10"), ("each", "1")]);
     for sender in ["Sender1", "Sender2"] {
         programs.until(&reader, &format!("has received 1 to 10 of {sender}"));
     }
-    assert_eq!(reader.printed().matches("speaks version 2").count(), 1, "{}", reader.printed());
+    assert_eq!(reader.printed().matches("speaks version 1").count(), 1, "{}", reader.printed());
     programs.stop(&senders);
     programs.stop(&reader);
     programs.stop(&broker);

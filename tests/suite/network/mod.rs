@@ -22,6 +22,7 @@ mod places;
 mod programs;
 mod proxy;
 mod python;
+mod returns;
 mod routers;
 mod secrets;
 mod sockets;

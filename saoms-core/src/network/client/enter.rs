@@ -9,7 +9,7 @@ use saoms_api::host::cdr;
 
 use super::{BEGINS, RUNS};
 use crate::network::exchange::Settings;
-use crate::network::exchange::wire::Begins;
+use crate::network::exchange::wire::{Begins, LARGEST_NUMBER};
 use crate::network::key;
 use crate::network::port::Port;
 use crate::network::transport::TransportSession;
@@ -43,14 +43,15 @@ struct Running {
 }
 
 /// Asks the other programs of a network whether components of this one run there, before these begin. One that was
-/// killed, or is about to end, is waited for: until it has said nothing for its patience.
+/// killed, or is about to end, is waited for: until it has said nothing for its patience. The date of this program is
+/// then later than that of all of which the others know that they have begun with one of its components.
 ///
 /// # Errors
 /// A component runs in another program that is there: a text for people. Or the transport refuses a subscription.
 pub fn enter(
     session: &TransportSession,
     port: &Arc<Port>,
-    settings: &Settings,
+    settings: &mut Settings,
     mut tell: impl FnMut(String),
     is_over: impl Fn() -> bool,
 ) -> Result<Entry, String> {
@@ -59,8 +60,7 @@ pub fn enter(
         return Ok(Entry::Free);
     }
     session.subscribe(&key::runs(settings.program), RUNS)?;
-    let begins = Begins { components: settings.components.iter().cloned().collect(), ..said_by(settings) };
-    let begins = cdr::encode(&begins);
+    let components: Vec<String> = settings.components.iter().cloned().collect();
     let since = Instant::now();
     let mut asked: Option<Instant> = None;
     let mut running: BTreeMap<u64, Running> = BTreeMap::new();
@@ -68,10 +68,15 @@ pub fn enter(
         if asked.is_none_or(|asked| asked.elapsed() >= AGAIN) {
             asked = Some(Instant::now());
             // What there is no room for is asked again.
-            let _ = session.put(&key::begins(settings.program), &begins, &[], true);
+            let begins = Begins { components: components.clone(), ..settings.begins() };
+            let _ = session.put(&key::begins(settings.program), &cdr::encode(&begins), &[], true);
         }
         for frame in port.take_frames() {
             let Ok(said) = cdr::decode::<Begins>(&frame.message) else { continue };
+            if frame.token == RUNS {
+                let later = said.latest.max(said.began).saturating_add(1);
+                settings.began = settings.began.max(later.min(LARGEST_NUMBER));
+            }
             match frame.token {
                 RUNS if running.len() < MOST_PROGRAMS || running.contains_key(&said.program) => {
                     let Some(component) = said.components.iter().find(|one| settings.components.contains(*one)) else {
@@ -89,7 +94,13 @@ pub fn enter(
                     one.last = now;
                 }
                 // Of two that begin at once, one does.
-                BEGINS if settings.program < said.program => answer(session, settings, &said),
+                BEGINS if settings.program < said.program => {
+                    let both = said.components.iter().filter(|one| settings.components.contains(*one));
+                    let runs = Begins { components: both.cloned().collect(), ..settings.begins() };
+                    if !runs.components.is_empty() {
+                        answer(session, said.program, &runs);
+                    }
+                }
                 _ => {}
             }
         }
@@ -111,32 +122,8 @@ pub fn enter(
     }
 }
 
-/// Says to a program that has begun what runs in this one.
-pub(super) fn introduce(session: &TransportSession, settings: &Settings, program: u64) {
-    let components: Vec<String> = settings.components.iter().cloned().collect();
-    if !components.is_empty() {
-        let runs = Begins { components, ..said_by(settings) };
-        // Who does not hear it waits longer for this program, should it be killed.
-        let _ = session.put(&key::runs(program), &cdr::encode(&runs), &[], true);
-    }
-}
-
 /// Says to a program that is about to begin which of its components run in this one.
-pub(super) fn answer(session: &TransportSession, settings: &Settings, begins: &Begins) {
-    let both: Vec<String> =
-        begins.components.iter().filter(|one| settings.components.contains(*one)).cloned().collect();
-    if !both.is_empty() && begins.program != settings.program {
-        let runs = Begins { components: both, ..said_by(settings) };
-        // It asks again.
-        let _ = session.put(&key::runs(begins.program), &cdr::encode(&runs), &[], true);
-    }
-}
-
-fn said_by(settings: &Settings) -> Begins {
-    Begins {
-        program: settings.program,
-        name: settings.name.clone(),
-        patience: settings.patience / 1_000_000,
-        components: Vec::new(),
-    }
+pub(super) fn answer(session: &TransportSession, program: u64, runs: &Begins) {
+    // It asks again.
+    let _ = session.put(&key::runs(program), &cdr::encode(runs), &[], true);
 }

@@ -84,6 +84,8 @@ pub(super) struct Member<F> {
     /// Where the outcomes of calls go, by their lines and numbers.
     tickets: HashMap<(u64, u64), Arc<Ticket>>,
     pub(super) link: Link,
+    /// Why the run has to end as failed, once it runs.
+    pub(super) failure: Option<String>,
     /// The requests of operators.
     requests: Requests,
     port: Arc<Port>,
@@ -124,6 +126,7 @@ impl<F: Fleet> Member<F> {
             others: BTreeSet::new(),
             tickets: HashMap::new(),
             link: Link::default(),
+            failure: None,
             requests: Requests::default(),
             port: Arc::clone(port),
             name: settings.name.clone(),
@@ -163,6 +166,9 @@ impl<F: Fleet> Member<F> {
         self.watch_link(now);
         self.look_for_peers(now);
         self.requests.forget(now);
+        if self.failure.is_some() && self.fleet.has_started() {
+            self.failure.take().into_iter().for_each(|reason| self.fleet.fail(reason));
+        }
     }
 
     /// Lets others forget events that components have carried out.

@@ -42,7 +42,7 @@ impl Wire {
     /// The same with the threads that put them.
     fn numbers_by_thread(&self) -> Vec<(u64, ThreadId)> {
         let put = self.put.lock().unwrap();
-        let of_topics = put.iter().filter(|(key, ..)| key.starts_with("saoms/1/topic/"));
+        let of_topics = put.iter().filter(|(key, ..)| key.starts_with("saoms/2/topic/"));
         let numbers = of_topics.flat_map(|(_, envelope, by)| {
             let Envelope { number, messages, .. } = cdr::decode(envelope).unwrap();
             (number..number + messages.len() as u64).map(|number| (number, *by))
@@ -148,6 +148,8 @@ impl Fleet for Idle {
 
     fn count_lost(&self, _: u64, _: &str) {}
 
+    fn fail(&self, _: String) {}
+
     fn is_interrupted(&self) -> bool {
         false
     }
@@ -193,6 +195,7 @@ fn program(url: &str) -> Program {
     let Opened::Session(session) = opened else { panic!("{opened:?}") };
     let member = Settings {
         program: 1,
+        began: 0,
         name: "own".to_owned(),
         patience: 1_000_000_000,
         limit: 1 << 20,

@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::MILLISECOND;
 use super::call::Outcome;
 use super::frame::Frame;
 use super::incoming::Arrived;
 use super::memory::{Memory, Remembered};
-use super::wire::Request;
+use super::wire::{Begins, Request};
 use crate::bus::Cell;
 
 /// Settings of a program on a network.
@@ -15,6 +16,8 @@ use crate::bus::Cell;
 pub struct Settings {
     /// The number of this program, which no other one has: another one at each start.
     pub program: u64,
+    /// When it began, in nanoseconds since 1970: of two programs with a component, the one that began later has it.
+    pub began: u64,
     /// Its name for people.
     pub name: String,
     /// Time without a sign of life after which others miss it, in nanoseconds.
@@ -32,6 +35,19 @@ pub struct Settings {
     pub memory: Option<Memory>,
 }
 
+impl Settings {
+    /// What the program says of itself before its components begin, and then; without these.
+    pub fn begins(&self) -> Begins {
+        Begins {
+            program: self.program,
+            name: self.name.clone(),
+            patience: self.patience / MILLISECOND,
+            began: self.began,
+            ..Begins::default()
+        }
+    }
+}
+
 /// Where something is put for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Destination {
@@ -43,6 +59,8 @@ pub enum Destination {
     Alive(u64),
     /// A program: an [`Again`](super::wire::Again).
     Ask(u64),
+    /// A program: a [`Begins`](super::wire::Begins), with what this one runs.
+    Runs(u64),
     /// A program: a [`Covered`](super::wire::Covered).
     Covered(u64),
     /// A program: a [`Look`](super::wire::Look).
@@ -154,6 +172,8 @@ pub enum News {
     Unreceived { name: Arc<str>, topic: Arc<str>, count: u64 },
     /// So many events of this program, which ends, stay in its state folder for another one.
     Later { name: Arc<str>, topic: Arc<str>, count: u64 },
+    /// A component of this program runs in another one, which began later: this one has to end.
+    Superseded { component: Arc<str>, name: Arc<str> },
     /// A component runs in two programs, of which one may be this one: its messages from this program are ignored.
     Twice { component: Arc<str>, program: u64, name: Arc<str> },
     /// A component begins anew in another program; so many of its messages came from the one before.

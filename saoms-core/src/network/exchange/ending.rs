@@ -53,7 +53,8 @@ impl Exchange {
 
     fn is_agreed(&self) -> bool {
         // Who said that all is done, and vanished, has said so: its last sign of life may be lost.
-        let counts = |peer: &&Peer| peer.is_reachable || peer.vote == Vote::Done;
+        // One whose components run elsewhere by now is about to end.
+        let counts = |peer: &&Peer| !peer.is_over && (peer.is_reachable || peer.vote == Vote::Done);
         let there = self.peers.values().filter(counts).map(|peer| peer.vote);
         let mut is_done = self.was_done;
         for vote in there.chain([self.vote]) {

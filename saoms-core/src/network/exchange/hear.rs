@@ -43,6 +43,8 @@ impl Exchange {
         }
         let Some(peer) = self.peers.get_mut(&program).filter(|peer| alive.number > peer.sign) else { return };
         peer.vote = Vote::of(alive.vote);
+        peer.signs = peer.signs.saturating_add(1);
+        let (signs, is_over) = (peer.signs, peer.is_over);
         (peer.sign, peer.heard, peer.patience) = (alive.number, now, alive.patience.saturating_mul(MILLISECOND));
         if std::mem::take(&mut peer.is_given_up) {
             for (topic, reading) in &mut peer.reading {
@@ -54,6 +56,11 @@ impl Exchange {
             self.calls_at = 0;
             let name = Arc::clone(&peer.name);
             self.actions.push(Action::Tell(News::Back { program, name }));
+        }
+        // What is said once may be lost, so that it is said ever more rarely; and one that was stopped for long does
+        // not know yet that its components run here.
+        if signs.is_power_of_two() || is_over && self.is_of_own(program) {
+            self.introduce(program);
         }
         self.note_twice(program);
         self.hear_reader(alive);
@@ -77,6 +84,7 @@ impl Exchange {
         let goes_on = self.past.contains_key(&alive.origin);
         let peer = self.peers.entry(program).or_insert_with(|| Peer::new(&alive.name, now));
         (peer.name, peer.origin, peer.start) = (Arc::clone(&name), alive.origin, alive.start);
+        (peer.began, peer.signs, peer.is_over) = (alive.began, 0, false);
         (peer.is_recalled, peer.is_reachable) = (false, true);
         self.unheard.remove(&alive.name);
         self.actions.push(Action::Tell(match goes_on {
@@ -205,6 +213,7 @@ impl Exchange {
             program: self.settings.program,
             origin: memory.map_or(self.settings.program, |memory| memory.origin),
             start: memory.map_or(0, |memory| memory.start),
+            began: self.settings.began,
             name: self.settings.name.clone(),
             number: self.sign,
             patience: self.settings.patience / MILLISECOND,
@@ -245,5 +254,6 @@ fn is_sane(alive: &Alive) -> bool {
     alive.patience <= LONGEST_PATIENCE
         && alive.reads.len() <= MOST_TOPICS
         && alive.sends.len() <= MOST_TOPICS
+        && alive.began <= LARGEST_NUMBER
         && sends.chain(cells).chain(welcomes).chain(received).all(|number| number <= LARGEST_NUMBER)
 }

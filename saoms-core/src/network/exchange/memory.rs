@@ -187,7 +187,7 @@ impl Exchange {
         let Some(past) = self.past.remove(&alive.origin) else { return };
         let Some(peer) = self.peers.get_mut(&alive.program) else { return };
         for owner in self.owners.values_mut().filter(|owner| owner.program == past.program) {
-            owner.program = alive.program;
+            (owner.program, owner.began) = (alive.program, alive.began);
         }
         for (topic, mut incoming) in past.incoming {
             if self.reads.get(&topic).is_none_or(|own| own.is_state) {

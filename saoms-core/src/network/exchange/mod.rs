@@ -45,7 +45,7 @@ use self::look::WantedCells;
 use self::memory::Past;
 pub use self::memory::{Delivered, KeptEvent, KnownReader, Memory, Remembered};
 use self::outgoing::{Kept, Outgoing, Sent};
-use self::owners::Owner;
+use self::owners::{Begun, Owner};
 use self::peer::Peer;
 use self::wire::{Alive, Vote};
 use crate::bus::cell_of;
@@ -106,8 +106,10 @@ pub struct Exchange {
     /// The number of the last look at cells, and when cells are due that nobody wants any more.
     looks: u64,
     drop_at: u64,
-    /// The components with which other programs have begun.
-    begun_with: BTreeMap<u64, BTreeSet<String>>,
+    /// The components with which other programs have begun, or are about to.
+    begun_with: BTreeMap<u64, Begun>,
+    /// True if it was told that a component of this program runs in one that began later.
+    is_superseded: bool,
     /// The numbers of events that were lost for want of room, and were not told yet.
     overflow: BTreeMap<Arc<str>, u64>,
     /// The numbers of the newest signs of life, each with its time.
@@ -141,6 +143,7 @@ impl Exchange {
             looks: 0,
             drop_at: u64::MAX,
             begun_with: BTreeMap::new(),
+            is_superseded: false,
             overflow: BTreeMap::new(),
             signs: VecDeque::new(),
             actions: Vec::new(),
@@ -309,7 +312,7 @@ impl Exchange {
 
     /// True if other programs are known, and none of them gives a sign of life.
     pub fn hears_nobody(&self) -> bool {
-        let mut heard = self.peers.values().filter(|peer| !peer.is_recalled).peekable();
+        let mut heard = self.peers.values().filter(|peer| !peer.is_recalled && !peer.is_over).peekable();
         heard.peek().is_some() && heard.all(|peer| !peer.is_reachable)
     }
 

@@ -15,6 +15,8 @@ pub(super) struct Peer {
     /// The first program that had its state folder, and the number of its start; 0 without a state folder.
     pub(super) origin: u64,
     pub(super) start: u64,
+    /// When it began, as it says.
+    pub(super) began: u64,
     /// True if it is known from an earlier start of this program, and was not heard since.
     pub(super) is_recalled: bool,
     /// What the state folder knows of it.
@@ -30,6 +32,10 @@ pub(super) struct Peer {
     pub(super) is_reachable: bool,
     /// True if nothing is kept for it any more: it was away for too long.
     pub(super) is_given_up: bool,
+    /// True if components of it run in a program that began later: nothing is kept for it, and it has no vote.
+    pub(super) is_over: bool,
+    /// Number of its signs of life that were heard, as far as that matters.
+    pub(super) signs: u8,
     /// Of each topic of this program that it reads, where it begins and what it has received.
     pub(super) reading: BTreeMap<Arc<str>, Reading>,
     /// What arrives from it on each topic that this program reads.
@@ -55,6 +61,7 @@ impl Peer {
             name: Arc::from(name),
             origin: 0,
             start: 0,
+            began: 0,
             is_recalled: false,
             known: None,
             sign: 0,
@@ -64,6 +71,8 @@ impl Peer {
             vote: Vote::Open,
             is_reachable: true,
             is_given_up: false,
+            is_over: false,
+            signs: 0,
             reading: BTreeMap::new(),
             incoming: BTreeMap::new(),
             differing: BTreeSet::new(),
@@ -78,6 +87,6 @@ impl Peer {
 
     /// The number of the first message of a topic that it may ask for; `None` if it asks for none.
     pub(super) fn needs(&self, topic: &str) -> Option<u64> {
-        self.reading.get(topic).filter(|_| !self.is_given_up).map(|reading| reading.next)
+        self.reading.get(topic).filter(|_| !self.is_given_up && !self.is_over).map(|reading| reading.next)
     }
 }

@@ -67,6 +67,9 @@ pub struct Alive {
     pub origin: u64,
     /// Greater than that of each earlier start with this state folder; 0 without one.
     pub start: u64,
+    /// When it began, in nanoseconds since 1970, but greater than that of each program that was known to have begun
+    /// with one of its components. Of two programs with a component, the one with the greater date has it.
+    pub began: u64,
     /// Its name for people: the node, or the name of its composite.
     pub name: String,
     /// The number of this sign, from 1.
@@ -303,6 +306,13 @@ pub struct Begins {
     pub patience: u64,
     /// The components that are about to begin; of an answer, those among them that run there.
     pub components: Vec<String>,
+    /// When the program began: see [`Alive`].
+    pub began: u64,
+    /// Of an answer, the latest such date of the programs that are known to have begun with one of the components that
+    /// it was asked for; 0 for none.
+    pub latest: u64,
+    /// Of the answer of a router that has just begun, the time within which others connect to it, in milliseconds.
+    pub settles: u64,
 }
 
 /// A call of an operation of a component, to the program that has it; or, with the number 0, a heartbeat for its

@@ -21,6 +21,8 @@ pub(crate) enum EndCause {
     Stopped,
     /// No component is left that can run.
     Lost,
+    /// The fleet cannot go on; why is among the reasons of the outcome.
+    Failed,
     /// Work is left, and nothing can happen any more.
     Standstill,
     /// No component is scheduled, and in virtual time none ever will be.

@@ -121,7 +121,7 @@ impl Engine {
                 reasons.push(format!("no component is scheduled, and in virtual time nothing else happens{which}"));
                 if left_out.is_some() { RunStatus::Incomplete } else { RunStatus::Done }
             }
-            Some(EndCause::Done | EndCause::Lost) | None => RunStatus::Done,
+            Some(EndCause::Done | EndCause::Lost | EndCause::Failed) | None => RunStatus::Done,
         };
         Outcome { status, reasons }
     }

@@ -406,6 +406,13 @@ impl Fleet for NetworkedFleet {
         self.shared.release(engine);
     }
 
+    fn fail(&self, reason: String) {
+        let mut engine = self.shared.lock();
+        engine.reasons.push(reason);
+        engine.begin_stop(EndCause::Failed, self.shared.clock.now());
+        self.shared.release(engine);
+    }
+
     fn is_interrupted(&self) -> bool {
         self.hooks.is_interrupted()
     }

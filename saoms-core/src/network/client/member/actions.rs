@@ -5,7 +5,6 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::host::cdr;
 
-use super::super::enter::introduce;
 use super::Member;
 use crate::network::control::Answer;
 use crate::network::exchange::{Action, Destination, Keys, News};
@@ -46,12 +45,10 @@ impl<F: Fleet> Member<F> {
                     if let News::Unreachable { name, .. } | News::Left { name, .. } = &news {
                         self.fleet.misses(name);
                     }
-                    if let News::Joined { program, .. } | News::GoesOn { program, .. } = &news
-                        && let Some(session) = &self.session
-                    {
-                        introduce(session, self.exchange.settings(), *program);
-                    }
                     let (level, text) = told(&news, &self.membership, &self.name);
+                    if matches!(news, News::Superseded { .. }) {
+                        self.failure = Some(text.clone());
+                    }
                     if news.lost() > 0 {
                         self.fleet.count_lost(news.lost(), &text);
                     }
@@ -95,6 +92,7 @@ impl<F: Fleet> Member<F> {
             Destination::Again(program, topic) => key::again(*program, topic),
             Destination::Alive(program) => key::alive(*program),
             Destination::Ask(program) => key::ask(*program),
+            Destination::Runs(program) => key::runs(*program),
             Destination::Covered(program) => key::covered(*program),
             Destination::Look(program) => key::look(*program),
             Destination::Around(program, topic) => key::around(*program, topic),

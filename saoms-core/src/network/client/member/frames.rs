@@ -52,8 +52,8 @@ impl<F: Fleet> Member<F> {
             }
             BEGINS => {
                 if let Ok(begins) = cdr::decode(&frame.message) {
-                    if let Some(session) = &self.session {
-                        answer(session, self.exchange.settings(), &begins);
+                    if let Some((session, runs)) = self.session.as_ref().zip(self.exchange.answer_begin(&begins, 0)) {
+                        answer(session, begins.program, &runs);
                     }
                     self.exchange.note_begin(begins);
                 }

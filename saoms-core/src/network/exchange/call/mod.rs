@@ -186,11 +186,13 @@ impl Exchange {
         self.calls_at = lines.into_iter().map(|line| self.pursue(line)).min().unwrap_or(u64::MAX);
     }
 
-    /// The program of this name that is there, or the last one that was: of two the one that was heard first last,
-    /// since one that was killed is missed later than its successor is heard.
+    /// The program of this name that is there, or the last one that was: of two the one that began last, since one that
+    /// was killed is missed later than its successor is heard.
     fn program_of(&self, name: &str) -> Option<u64> {
         let named = self.peers.iter().filter(|(_, peer)| &*peer.name == name);
-        named.max_by_key(|(_, peer)| (peer.is_reachable, peer.since)).map(|(program, _)| *program)
+        named
+            .max_by_key(|(_, peer)| (!peer.is_over, peer.is_reachable, peer.began, peer.since))
+            .map(|(program, _)| *program)
     }
 
     /// Pursues the calls of a line. Gives the time at which something is due next.

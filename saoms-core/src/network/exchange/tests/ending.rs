@@ -9,6 +9,7 @@ use super::lossy::MILLISECOND;
 fn program(others: &[&str]) -> Exchange {
     Exchange::new(Settings {
         program: 1,
+        began: 0,
         name: "own".to_owned(),
         patience: 1_000 * MILLISECOND,
         limit: 1 << 20,

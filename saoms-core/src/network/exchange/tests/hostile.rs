@@ -44,6 +44,7 @@ fn said() -> impl Strategy<Value = Said> {
                 program,
                 origin: number[10] % 4,
                 start: number[11],
+                began: number[11] % 4,
                 name: "stranger".to_owned(),
                 number: number[0],
                 patience: number[1],
@@ -124,6 +125,7 @@ proptest! {
     fn nothing_that_is_said_ends_a_program(all in prop::collection::vec(said(), 1..60)) {
         let mut exchange = Exchange::new(Settings {
             program: 0,
+            began: 3,
             name: "own".to_owned(),
             patience: 1_000 * MILLISECOND,
             limit: 8 << 10,

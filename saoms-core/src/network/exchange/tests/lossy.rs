@@ -163,6 +163,7 @@ impl Lossy {
         });
         let mut exchange = Exchange::new(Settings {
             program: number as u64,
+            began: number as u64,
             name: name.to_owned(),
             patience: 1_000 * MILLISECOND,
             limit: 256 << 10,
@@ -379,6 +380,7 @@ impl Lossy {
                         News::Replaced { name } => format!("Replaced {name}"),
                         News::Unreceived { name, topic, count } => format!("Unreceived {name} {topic} {count}"),
                         News::Later { name, topic, count } => format!("Later {name} {topic} {count}"),
+                        News::Superseded { component, name } => format!("Superseded {component} {name}"),
                         News::Twice { component, program, .. } => format!("Twice {component} {program}"),
                         News::Anew { component, program, after, .. } => format!("Anew {component} {program} {after}"),
                         News::Differs { program, component, topic, .. } => {
@@ -454,6 +456,7 @@ impl Lossy {
                 Destination::Reply(program) if is_mine(program) => {
                     exchange.take_reply(cdr::decode(bytes).unwrap(), now);
                 }
+                Destination::Runs(program) if is_mine(program) => exchange.note_begin(cdr::decode(bytes).unwrap()),
                 Destination::Ask(program) if is_mine(program) => exchange.answer(&cdr::decode(bytes).unwrap()),
                 Destination::Covered(program) if is_mine(program) => exchange.cover(&cdr::decode(bytes).unwrap(), now),
                 _ => {}

@@ -5,6 +5,7 @@ mod ending;
 mod hostile;
 pub(in crate::network::exchange) mod lossy;
 mod memory;
+mod owners;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -252,6 +253,7 @@ proptest! {
 fn programs_that_died_make_room_for_new_ones() {
     let mut exchange = Exchange::new(Settings {
         program: 0,
+        began: 0,
         name: "own".to_owned(),
         patience: 1_000 * MILLISECOND,
         limit: 8 << 10,
