@@ -1,6 +1,6 @@
 //! Where the threads of a run and of a transport leave what is for the thread of a network.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 use std::fmt;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
@@ -14,8 +14,10 @@ use super::ticket::Ticket;
 use super::transport::{Delivered, Receiver};
 use crate::bus::Cell;
 
-/// Messages of components that wait for the thread of the network, at most.
+/// Messages of components that wait for the thread of the network, at most, and their bytes, but for those of a single
+/// one.
 const MOST_MESSAGES: usize = 262_144;
+const MOST_MESSAGE_BYTES: usize = 256 << 20;
 /// Messages that the thread which leaves them sends itself, at most: more take longer than to wake another thread.
 pub(super) const MOST_AT_ONCE: usize = 16;
 /// Bytes of these, at most: so many fit into one packet of a transport, for which it need not wait for room.
@@ -39,6 +41,8 @@ pub(crate) enum FromRun {
         number: Option<u64>,
         message: SharedMessage,
     },
+    /// So many events of a topic found no room, and are lost; the last one had this number in the state folder.
+    Skipped { topic: Arc<str>, count: u64, last: Option<u64> },
     /// Components read a topic.
     Reads { topic: Arc<str>, is_state: bool, schema: u64 },
     /// They read these cells of it alone; `None`: all of it.
@@ -82,11 +86,53 @@ pub(super) trait AtOnce: Send + Sync {
     fn send(&self) -> bool;
 }
 
+/// The topic, the component and the key of a state.
+type StateKey = (Arc<str>, Arc<str>, Option<u64>);
+
+/// Messages that found no room. Until all that waits is taken, no later message waits before them.
+#[derive(Default)]
+struct Beyond {
+    /// The newest of each state.
+    states: HashMap<StateKey, FromRun>,
+    /// Of each topic, how many events are lost, and the number of the last one in the state folder.
+    events: BTreeMap<Arc<str>, (u64, Option<u64>)>,
+}
+
+impl Beyond {
+    fn is_empty(&self) -> bool {
+        self.states.is_empty() && self.events.is_empty()
+    }
+
+    /// Takes a message. True if it is lost.
+    fn take(&mut self, message: FromRun) -> bool {
+        let FromRun::Message { topic, component, is_state, number, message: content, .. } = &message else {
+            return false;
+        };
+        if *is_state {
+            self.states.insert((Arc::clone(topic), Arc::clone(component), content.key()), message);
+            return false;
+        }
+        let (count, last) = self.events.entry(Arc::clone(topic)).or_default();
+        (*count, *last) = (*count + 1, number.or(*last));
+        true
+    }
+
+    fn into_all(self) -> impl Iterator<Item = FromRun> {
+        let skipped = |(topic, (count, last))| FromRun::Skipped { topic, count, last };
+        self.states.into_values().chain(self.events.into_iter().map(skipped))
+    }
+}
+
 /// What waits for the thread of the network.
 #[derive(Default)]
 pub(crate) struct Waiting {
     pub(crate) from_run: Vec<FromRun>,
-    /// Messages that found no room.
+    /// Bytes of the messages among it.
+    message_bytes: usize,
+    /// What is wanted of topics: what is said last counts.
+    wants: BTreeMap<Arc<str>, Option<BTreeSet<Cell>>>,
+    beyond: Beyond,
+    /// Events that found no room.
     pub(super) lost: u64,
     pub(super) frames: VecDeque<Frame>,
     bytes: usize,
@@ -108,7 +154,7 @@ impl Waiting {
     /// True if there is nothing but messages of components.
     pub(super) fn has_no_more_than_messages(&self) -> bool {
         let are_messages = self.from_run.iter().all(|from_run| matches!(from_run, FromRun::Message { .. }));
-        are_messages && self.frames.is_empty() && self.links.is_empty() && !self.is_nudged
+        are_messages && self.wants.is_empty() && self.frames.is_empty() && self.links.is_empty() && !self.is_nudged
     }
 
     /// Takes all of it. What is known of the thread of the network stays: another one may take it while that one
@@ -116,18 +162,39 @@ impl Waiting {
     fn take(&mut self) -> Waiting {
         let Waiting { is_closed, has_ended, sleeps, ref at_once, .. } = *self;
         let rest = Waiting { is_closed, has_ended, sleeps, at_once: at_once.clone(), ..Waiting::default() };
-        std::mem::replace(self, rest)
+        let mut taken = std::mem::replace(self, rest);
+        let (wants, beyond) = (std::mem::take(&mut taken.wants), std::mem::take(&mut taken.beyond));
+        taken.from_run.extend(wants.into_iter().map(|(topic, cells)| FromRun::Wants { topic, cells }));
+        taken.from_run.extend(beyond.into_all());
+        taken
+    }
+
+    /// True if there is room for something: what is read is said once, and is no more than there are topics.
+    fn has_room_for(&self, from_run: &FromRun) -> bool {
+        let has_room = self.from_run.len() < MOST_MESSAGES;
+        match from_run {
+            FromRun::Reads { .. } => true,
+            FromRun::Message { .. } => {
+                let bytes = self.message_bytes + size(from_run);
+                has_room && self.beyond.is_empty() && (bytes <= MOST_MESSAGE_BYTES || self.message_bytes == 0)
+            }
+            _ => has_room,
+        }
     }
 
     /// True if there are a few short messages of components alone.
     fn is_short(&self) -> bool {
-        let size = |from_run: &FromRun| match from_run {
-            FromRun::Message { message, .. } => message.bytes().len(),
-            _ => 0,
-        };
         self.from_run.len() <= MOST_AT_ONCE
             && self.has_no_more_than_messages()
-            && self.from_run.iter().map(size).sum::<usize>() <= MOST_BYTES_AT_ONCE
+            && self.message_bytes <= MOST_BYTES_AT_ONCE
+    }
+}
+
+/// Number of the bytes of a message.
+fn size(from_run: &FromRun) -> usize {
+    match from_run {
+        FromRun::Message { message, .. } => message.bytes().len(),
+        _ => 0,
     }
 }
 
@@ -168,19 +235,23 @@ impl Port {
         let mut waiting = self.lock();
         for from_run in all {
             match from_run {
-                // What is read is said once; it is no more than there are topics.
-                from_run
-                    if !waiting.has_ended
-                        && (waiting.from_run.len() < MOST_MESSAGES || matches!(from_run, FromRun::Reads { .. })) =>
-                {
+                FromRun::Wants { topic, cells } if !waiting.has_ended => {
+                    waiting.wants.insert(topic, cells);
+                }
+                from_run if !waiting.has_ended && waiting.has_room_for(&from_run) => {
+                    waiting.message_bytes += size(&from_run);
                     waiting.from_run.push(from_run);
                 }
                 FromRun::Call { ticket, .. } => ticket.fill(Outcome::Dropped),
                 // Heartbeats are lost as on a network, and calls are made again.
                 FromRun::Beat { .. } | FromRun::Reply { .. } | FromRun::Unserved { .. } => {}
-                FromRun::Message { .. } | FromRun::Reads { .. } | FromRun::Wants { .. } => waiting.lost += 1,
-                // Who asks gives up, and can ask again.
-                FromRun::Answer { .. } => {}
+                message @ FromRun::Message { .. } if !waiting.has_ended => {
+                    let is_lost = waiting.beyond.take(message);
+                    waiting.lost += u64::from(is_lost);
+                }
+                // Nobody takes it any more, or who asks gives up, and can ask again.
+                FromRun::Message { .. } | FromRun::Skipped { .. } | FromRun::Answer { .. } => {}
+                FromRun::Reads { .. } | FromRun::Wants { .. } => {}
             }
         }
     }
@@ -214,6 +285,7 @@ impl Port {
     pub(super) fn end(&self) {
         let mut waiting = self.lock();
         waiting.has_ended = true;
+        (waiting.wants, waiting.beyond, waiting.message_bytes) = Default::default();
         for from_run in std::mem::take(&mut waiting.from_run) {
             if let FromRun::Call { ticket, .. } = from_run {
                 ticket.fill(Outcome::Dropped);
@@ -302,6 +374,8 @@ mod tests {
     use std::thread;
     use std::time::Instant;
 
+    use saoms_api::{Cause, Header, Time};
+
     use super::*;
 
     /// Longest time for something that has to happen at once.
@@ -316,6 +390,68 @@ mod tests {
         let waiting = port.take();
         assert_eq!((waiting.from_run.len(), waiting.lost), (MOST_MESSAGES + 1, 0));
         assert!(matches!(waiting.from_run.last(), Some(FromRun::Reads { .. })));
+    }
+
+    fn message(topic: &str, is_state: bool, key: u64, bytes: usize) -> FromRun {
+        let header = Header { sender: 0, sent: Time::default(), cause: Cause::default() };
+        FromRun::Message {
+            topic: topic.into(),
+            component: "Own".into(),
+            to: None,
+            is_state,
+            schema: 0,
+            number: None,
+            message: SharedMessage::from_bytes(header, None, vec![key as u8; bytes]).of(Some(key), None),
+        }
+    }
+
+    /// What waits beyond the first messages.
+    fn beyond(port: &Port, first: usize) -> (Vec<String>, u64) {
+        let waiting = port.take();
+        let shown = waiting.from_run.iter().skip(first).map(|from_run| match from_run {
+            FromRun::Message { topic, message, .. } => format!("{topic} {:?} {}", message.key(), message.bytes()[0]),
+            FromRun::Skipped { topic, count, last } => format!("{topic} skipped {count} {last:?}"),
+            FromRun::Wants { topic, cells } => format!("{topic} wants {cells:?}"),
+            other => format!("{other:?}"),
+        });
+        let mut shown: Vec<String> = shown.collect();
+        shown.sort_unstable();
+        (shown, waiting.lost)
+    }
+
+    #[test]
+    fn of_what_finds_no_room_the_newest_states_wait_and_lost_events_are_told_behind_those_that_wait() {
+        let port = Port::default();
+        port.put((0..MOST_MESSAGES).map(|_| message("EVENTS", false, 0, 1)));
+        let late = [("STATES", true, 1), ("EVENTS", false, 2), ("STATES", true, 2), ("OTHER", false, 3)];
+        port.put(late.into_iter().map(|(topic, is_state, key)| message(topic, is_state, key, 1)));
+        port.put(std::iter::once(message("EVENTS", false, 4, 1)));
+        for cells in [None, Some(BTreeSet::from([(0, 0)])), Some(BTreeSet::from([(1, 0)]))] {
+            port.put(std::iter::once(FromRun::Wants { topic: "STATES".into(), cells }));
+        }
+        let expected = [
+            "EVENTS skipped 2 None", "OTHER skipped 1 None", "STATES Some(1) 1", "STATES Some(2) 2",
+            "STATES wants Some({(1, 0)})",
+        ];
+        assert_eq!(beyond(&port, MOST_MESSAGES), (expected.map(str::to_owned).to_vec(), 3));
+        port.put(std::iter::once(message("EVENTS", false, 5, 1)));
+        assert_eq!(beyond(&port, 0), (vec!["EVENTS Some(5) 5".to_owned()], 0));
+    }
+
+    #[test]
+    fn the_bytes_of_what_waits_are_bounded_and_no_later_message_overtakes_one_that_found_no_room() {
+        let port = Port::default();
+        let half = MOST_MESSAGE_BYTES / 2;
+        port.put((0..2).map(|_| message("EVENTS", false, 0, half)));
+        port.put(std::iter::once(message("STATES", true, 7, 2)));
+        port.put(std::iter::once(message("STATES", true, 7, 1)));
+        port.put(std::iter::once(message("EVENTS", false, 8, 1)));
+        let expected = ["EVENTS skipped 1 None", "STATES Some(7) 7"].map(str::to_owned).to_vec();
+        let waiting = port.lock().from_run.len();
+        assert_eq!((waiting, beyond(&port, 2)), (2, (expected, 1)));
+        // One that is longer than all that may wait is taken alone.
+        port.put(std::iter::once(message("EVENTS", false, 0, MOST_MESSAGE_BYTES + 1)));
+        assert_eq!(port.take().lost, 0);
     }
 
     #[test]

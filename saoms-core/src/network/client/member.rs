@@ -316,6 +316,7 @@ impl<F: Fleet> Member<F> {
                 }
                 self.exchange.read(&topic, is_state, schema);
             }
+            FromRun::Skipped { topic, count, last } => self.exchange.skip(&topic, count, last),
             FromRun::Wants { topic, cells } => self.exchange.want(&topic, cells.as_ref(), self.now()),
             FromRun::Call { call, ticket } => {
                 if let Some(told) = self.rights.as_mut().and_then(|rights| rights.call(&call.caller)) {

@@ -191,9 +191,8 @@ impl Exchange {
         let (component, bytes) = (Arc::clone(component), bytes.into());
         let number = number.map_or(outgoing.last + 1, |number| number.max(outgoing.last + 1));
         if number > outgoing.last + 1 {
-            // Those before it found no room on their way here, which was told; these are lost with them.
-            let count = outgoing.forget_before(number);
-            outgoing.last = number - 1;
+            // Those before it found no room on their way here, which was told.
+            let count = outgoing.skip_before(number);
             *self.overflow.entry(Arc::clone(topic)).or_default() += count;
         }
         let cells = outgoing.place(&(Arc::clone(&component), key), place.map(cell_of));
@@ -211,6 +210,18 @@ impl Exchange {
         }
         self.put_message(to, is_state, sent);
         self.has_news = true;
+    }
+
+    /// So many events of a topic found no room on their way here, which was told, after all that were sent before:
+    /// their readers learn it. The last one has this number in the state folder.
+    pub fn skip(&mut self, topic: &Arc<str>, count: u64, last: Option<u64>) {
+        let outgoing = self.outgoing.entry(Arc::clone(topic)).or_insert_with(|| Outgoing::new(false));
+        let last = last.unwrap_or(outgoing.last.saturating_add(count));
+        if last > outgoing.last {
+            let count = outgoing.skip_before(last + 1);
+            *self.overflow.entry(Arc::clone(topic)).or_default() += count;
+            self.say_soon();
+        }
     }
 
     /// Puts a message on the network: with the one before, if both are events of one component.

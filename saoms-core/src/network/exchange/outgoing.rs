@@ -136,6 +136,14 @@ impl Outgoing {
         count
     }
 
+    /// The next message has this number: those before it that were not kept are lost. So are kept ones before them,
+    /// since nothing says that some in between are missing. Gives how many these were.
+    pub(super) fn skip_before(&mut self, number: u64) -> u64 {
+        let count = self.forget_before(number);
+        self.last = self.last.max(number - 1);
+        count
+    }
+
     /// The kept messages of these numbers.
     pub(super) fn between(&self, first: u64, last: u64) -> Box<dyn Iterator<Item = &Sent> + '_> {
         match &self.kept {

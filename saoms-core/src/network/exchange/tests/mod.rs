@@ -8,6 +8,7 @@ mod memory;
 mod owners;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use proptest::prelude::*;
 
@@ -134,6 +135,28 @@ fn events_that_nobody_takes_in_time_are_counted_at_both_ends() {
     assert!(sender > 0);
     assert_eq!(sender, reader);
     assert_eq!(events(&network, "EVENTS")[&(0, 1)].len() as u64 + reader, 2000);
+}
+
+#[test]
+fn readers_learn_of_events_that_found_no_room_on_their_way_to_the_network() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    network.send(0, "EVENTS");
+    network.run(500 * MILLISECOND);
+    network.programs[0].exchange.skip(&Arc::from("EVENTS"), 5, None);
+    network.run(500 * MILLISECOND);
+    assert!(network.told(1).contains(&"Lost 0 EVENTS 5".to_owned()), "{:?}", network.told(1));
+    network.send(0, "EVENTS");
+    network.run(500 * MILLISECOND);
+    assert_eq!(events(&network, "EVENTS")[&(0, 1)], [1, 2]);
+    // Those of a state folder have numbers of their own.
+    network.programs[0].exchange.skip(&Arc::from("EVENTS"), 2, Some(20));
+    network.programs[0].exchange.skip(&Arc::from("EVENTS"), 2, Some(20));
+    network.send(0, "EVENTS");
+    network.run(1_000 * MILLISECOND);
+    assert_eq!(events(&network, "EVENTS")[&(0, 1)], [1, 2, 3]);
+    assert!(network.told(1).contains(&"Lost 0 EVENTS 13".to_owned()), "{:?}", network.told(1));
+    assert!(network.programs[0].exchange.is_complete());
 }
 
 #[test]
