@@ -57,6 +57,10 @@ pub(super) fn told(news: &News, membership: &Membership, own: &str) -> (Level, S
                  and those that follow until it is there again"
             ),
         ),
+        News::NotKept { name, count } => (
+            Level::Error,
+            format!("{count} more messages are lost for program `{name}`, which were sent while it was away"),
+        ),
         News::Replaced { name } => (
             Level::Info,
             format!("components of program `{name}` have begun in another program: nothing is kept for that one"),

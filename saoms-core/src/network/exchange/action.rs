@@ -164,6 +164,8 @@ pub enum News {
     Back { program: u64, name: Arc<str> },
     /// It was away for so long that nothing is kept for it any more: it lacks so many events.
     GivenUp { program: u64, name: Arc<str>, count: u64 },
+    /// It is there again, and lacks so many more events that were not kept for it meanwhile.
+    NotKept { name: Arc<str>, count: u64 },
     /// Its components have begun in another program: nothing is kept for it any more.
     Replaced { name: Arc<str> },
     /// So many events of a topic did not arrive from it, and cannot be sent again.
@@ -189,6 +191,7 @@ impl News {
     pub fn lost(&self) -> u64 {
         match self {
             News::GivenUp { count, .. }
+            | News::NotKept { count, .. }
             | News::Lost { count, .. }
             | News::Unreceived { count, .. }
             | News::Overflow { count, .. } => *count,

@@ -26,11 +26,8 @@ impl Exchange {
 
     /// The programs that lack events of this one, with the topic and the number of these.
     fn lacking(&self) -> impl Iterator<Item = (&Peer, &Arc<str>, u64)> {
-        let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
-        events.flat_map(|(topic, outgoing)| {
-            let needed = move |peer: &Peer| peer.needs(topic).filter(|next| *next <= outgoing.last);
-            self.peers.values().filter_map(move |peer| Some((peer, topic, outgoing.last + 1 - needed(peer)?)))
-        })
+        let peers = self.peers.values().filter(|peer| !peer.is_given_up);
+        peers.flat_map(move |peer| self.lacked_by(peer).map(move |(topic, count)| (peer, topic, count)))
     }
 
     /// Says whether the program sees work left.
@@ -77,7 +74,13 @@ impl Exchange {
                 None => News::Unreceived { name, topic, count },
             })
         });
-        let unreceived: Vec<Action> = unreceived.collect();
+        // What is kept no more for who was given up is in no state folder either.
+        let given_up = self.peers.values().filter(|peer| peer.is_given_up);
+        let not_kept = given_up.flat_map(|peer| self.lacked_by(peer).map(move |(topic, count)| (peer, topic, count)));
+        let not_kept = not_kept.map(|(peer, topic, count)| {
+            Action::Tell(News::Unreceived { name: Arc::clone(&peer.name), topic: Arc::clone(topic), count })
+        });
+        let unreceived: Vec<Action> = unreceived.chain(not_kept).collect();
         self.actions.extend(unreceived);
         self.remember();
         let alive = self.sign_of_life(true);

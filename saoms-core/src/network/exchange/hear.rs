@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::action::{Action, News};
 use super::again::note_missing;
 use super::cells::Cells;
-use super::outgoing::Outgoing;
 use super::peer::{Peer, Reading};
 use super::wire::{Alive, LARGEST_NUMBER, Reads, Received, Sends, Vote, Welcome};
 use super::{Exchange, MILLISECOND, look};
@@ -46,12 +45,6 @@ impl Exchange {
         peer.signs = peer.signs.saturating_add(1);
         let (signs, is_over) = (peer.signs, peer.is_over);
         (peer.sign, peer.heard, peer.patience) = (alive.number, now, alive.patience.saturating_mul(MILLISECOND));
-        if std::mem::take(&mut peer.is_given_up) {
-            for (topic, reading) in &mut peer.reading {
-                let oldest = self.outgoing.get(topic).map_or(1, Outgoing::oldest);
-                reading.next = reading.next.max(oldest);
-            }
-        }
         if !std::mem::replace(&mut peer.is_reachable, true) {
             self.calls_at = 0;
             let name = Arc::clone(&peer.name);
@@ -108,7 +101,7 @@ impl Exchange {
         if let Some(peer) = self.remove_peer(program) {
             // If it is there again after all, it begins anew.
             self.left.remove(&program);
-            let count = self.lacked_by(&peer);
+            let count = self.lacked_by(&peer).map(|(_, count)| count).sum();
             self.actions.push(Action::Tell(News::GivenUp { program, name: peer.name, count }));
             self.forget_received();
         }
@@ -123,7 +116,7 @@ impl Exchange {
             if !peer.reading.contains_key(topic.as_str()) {
                 let outgoing = self.outgoing.get(topic.as_str());
                 let first = outgoing.filter(|outgoing| !outgoing.is_state()).map_or(1, |outgoing| outgoing.last + 1);
-                let reading = Reading { next: first, is_welcomed: false };
+                let reading = Reading { next: first, ..Reading::default() };
                 peer.reading.insert(Arc::from(topic.as_str()), reading);
                 is_new = true;
             }
@@ -135,6 +128,7 @@ impl Exchange {
                 reading.next = reading.next.max(*next);
             }
         }
+        self.take_back(alive.program);
         if is_new {
             self.say_soon();
         }

@@ -136,7 +136,7 @@ impl Exchange {
             (peer.patience, peer.is_reachable) = (reader.patience.saturating_mul(MILLISECOND), false);
             peer.is_recalled = true;
             for Received { topic, next, .. } in &reader.received {
-                let reading = Reading { next: *next, is_welcomed: false };
+                let reading = Reading { next: *next, ..Reading::default() };
                 peer.reading.insert(Arc::from(topic.as_str()), reading);
             }
             peer.known = Some(reader.clone());

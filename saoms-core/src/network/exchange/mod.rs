@@ -21,6 +21,7 @@ mod ending;
 mod frame;
 mod hear;
 mod incoming;
+mod limit;
 mod look;
 mod memory;
 mod outgoing;
@@ -44,7 +45,7 @@ pub use self::incoming::Arrived;
 use self::look::WantedCells;
 use self::memory::Past;
 pub use self::memory::{Delivered, KeptEvent, KnownReader, Memory, Remembered};
-use self::outgoing::{Kept, Outgoing, Sent};
+use self::outgoing::{Outgoing, Sent};
 use self::owners::{Begun, Owner};
 use self::peer::Peer;
 use self::wire::{Alive, Vote};
@@ -382,59 +383,5 @@ impl Exchange {
     fn put_alive(&mut self, alive: &Alive) {
         let bytes = cdr::encode(alive).into();
         self.actions.push(Action::Put { to: Destination::Alive(self.settings.program), bytes });
-    }
-
-    /// Forgets events that all readers have received.
-    fn forget_received(&mut self) {
-        for (topic, outgoing) in &mut self.outgoing {
-            let needed = self.peers.values().filter_map(|peer| peer.needs(topic)).min();
-            if let Some(cells) = &mut outgoing.cells {
-                // Who is away looks when it is back.
-                let there = self.peers.values().filter(|peer| peer.is_reachable);
-                let needed = there.filter_map(|peer| peer.needs(topic)).min().unwrap_or(outgoing.last + 1);
-                cells.forget(needed.saturating_sub(1));
-            }
-            outgoing.forget_before(needed.unwrap_or(outgoing.last + 1));
-        }
-    }
-
-    /// Gives up programs that are away, and then events, when too much is kept.
-    fn keep_within_limit(&mut self) {
-        let events = |outgoing: &&mut Outgoing| matches!(outgoing.kept, Kept::Events(_));
-        loop {
-            let size: usize = self.outgoing.values().filter(|one| !one.is_state()).map(|outgoing| outgoing.size).sum();
-            if size <= self.settings.limit {
-                return;
-            }
-            let away = self.peers.iter().filter(|(_, peer)| !peer.is_reachable && !peer.is_given_up);
-            if let Some((program, peer)) = away.min_by_key(|(_, peer)| peer.heard) {
-                let (program, name) = (*program, Arc::clone(&peer.name));
-                let count = self.peers.get(&program).map_or(0, |peer| self.lacked_by(peer));
-                self.peers.get_mut(&program).into_iter().for_each(|peer| peer.is_given_up = true);
-                self.actions.push(Action::Tell(News::GivenUp { program, name, count }));
-                self.forget_received();
-                continue;
-            }
-            let all = self.outgoing.iter_mut().filter(|(_, outgoing)| events(outgoing));
-            let Some((topic, outgoing)) = all.max_by_key(|(_, outgoing)| outgoing.size) else { return };
-            let count = outgoing.forget_before(outgoing.oldest() + 1);
-            *self.overflow.entry(Arc::clone(topic)).or_default() += count;
-            if count == 0 {
-                return;
-            }
-        }
-    }
-
-    /// Tells which events were lost for want of room: all since the last time together, since they can be many.
-    fn tell_overflow(&mut self) {
-        let lost = std::mem::take(&mut self.overflow).into_iter().filter(|(_, count)| *count > 0);
-        self.actions.extend(lost.map(|(topic, count)| Action::Tell(News::Overflow { topic, count })));
-    }
-
-    /// Number of the events that a program lacks.
-    fn lacked_by(&self, peer: &Peer) -> u64 {
-        let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
-        let lacks = events.filter_map(|(topic, outgoing)| Some((outgoing.last + 1).saturating_sub(peer.needs(topic)?)));
-        lacks.sum()
     }
 }

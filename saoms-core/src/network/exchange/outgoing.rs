@@ -144,6 +144,15 @@ impl Outgoing {
         count
     }
 
+    /// The size of the kept events from a number up to before another one, in bytes, as far as they are of the same
+    /// size.
+    pub(super) fn size_between(&self, first: u64, end: u64) -> usize {
+        let Kept::Events(events) = &self.kept else { return 0 };
+        let place = |number: u64| events.partition_point(|sent| sent.number < number);
+        let count = place(end).saturating_sub(place(first));
+        self.size / events.len().max(1) * count
+    }
+
     /// The kept messages of these numbers.
     pub(super) fn between(&self, first: u64, last: u64) -> Box<dyn Iterator<Item = &Sent> + '_> {
         match &self.kept {

@@ -47,12 +47,14 @@ pub(super) struct Peer {
 }
 
 /// The state of a reader of a topic.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reading {
     /// The number of the first message that it lacks.
     pub(super) next: u64,
     /// True if it knows where it begins.
     pub(super) is_welcomed: bool,
+    /// Of a program that was given up: what it lacks before this number was counted as lost.
+    pub(super) counted: u64,
 }
 
 impl Peer {

@@ -47,6 +47,8 @@ pub(in crate::network::exchange) struct Program {
     name: String,
     sent: BTreeMap<String, u64>,
     told: Vec<String>,
+    /// Number of the messages that it has counted as lost.
+    pub(in crate::network::exchange) lost: u64,
     /// Its state folder, if it has one.
     pub(in crate::network::exchange) folder: Option<Memory>,
 }
@@ -182,6 +184,7 @@ impl Lossy {
             name: name.to_owned(),
             sent: BTreeMap::new(),
             told: Vec::new(),
+            lost: 0,
             folder,
         });
         self.carry_out(number);
@@ -368,6 +371,7 @@ impl Lossy {
                     changes.into_iter().for_each(|change| remember(folder, change));
                 }
                 Action::Tell(news) => {
+                    self.programs[program].lost += news.lost();
                     let line = match news {
                         News::Joined { program, .. } => format!("Joined {program}"),
                         News::GoesOn { program, .. } => format!("GoesOn {program}"),
@@ -376,6 +380,7 @@ impl Lossy {
                         News::Unreachable { program, .. } => format!("Unreachable {program}"),
                         News::Back { program, .. } => format!("Back {program}"),
                         News::GivenUp { program, .. } => format!("GivenUp {program}"),
+                        News::NotKept { name, count } => format!("NotKept {name} {count}"),
                         News::Lost { program, topic, count, .. } => format!("Lost {program} {topic} {count}"),
                         News::Replaced { name } => format!("Replaced {name}"),
                         News::Unreceived { name, topic, count } => format!("Unreceived {name} {topic} {count}"),

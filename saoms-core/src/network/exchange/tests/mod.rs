@@ -3,6 +3,7 @@
 mod cells;
 mod ending;
 mod hostile;
+mod limit;
 pub(in crate::network::exchange) mod lossy;
 mod memory;
 mod owners;
@@ -91,30 +92,6 @@ fn who_joins_late_gets_the_newest_state_and_events_from_then_on() {
         .map(|one| (one.key, one.number))
         .collect();
     assert_eq!(states, [(Some(3), 39), (Some(4), 40)]);
-}
-
-#[test]
-fn beyond_the_limit_programs_that_are_away_are_given_up_first() {
-    let mut network = Lossy::new(3, Weather::calm(), 1);
-    network.run(500 * MILLISECOND);
-    network.programs[2].is_stopped = true;
-    for _ in 0..2000 {
-        network.send(0, "EVENTS");
-        network.run(2 * MILLISECOND);
-    }
-    assert_eq!(events(&network, "EVENTS")[&(0, 1)].len(), 2000);
-    let told = network.told(0);
-    assert!(told.contains(&"GivenUp 2".to_owned()), "{told:?}");
-    assert!(!told.iter().any(|line| line.starts_with("Overflow")), "{told:?}");
-    network.programs[2].is_stopped = false;
-    network.run(1_000 * MILLISECOND);
-    network.send(0, "EVENTS");
-    network.run(2_000 * MILLISECOND);
-    let heard = events(&network, "EVENTS");
-    assert_eq!(heard[&(0, 2)].last(), Some(&2001));
-    let lost: u64 =
-        network.told(2).iter().filter_map(|line| line.strip_prefix("Lost 0 EVENTS ")?.parse::<u64>().ok()).sum();
-    assert_eq!(heard[&(0, 2)].len() as u64 + lost, 2001);
 }
 
 #[test]
