@@ -65,6 +65,13 @@ pub(super) fn told(news: &News, membership: &Membership, own: &str) -> (Level, S
             Level::Info,
             format!("components of program `{name}` have begun in another program: nothing is kept for that one"),
         ),
+        News::Stays { name, topic, count } => (
+            Level::Warning,
+            format!(
+                "{count} messages of program `{name}` on topic `{topic}` have not arrived: they stay in its state folder, and come \
+                 when it starts again"
+            ),
+        ),
         News::Unreceived { name, topic, count } => (
             Level::Error,
             format!("program `{name}` has not received {count} messages on topic `{topic}`, and this program ends"),

@@ -170,6 +170,8 @@ pub enum News {
     Replaced { name: Arc<str> },
     /// So many events of a topic did not arrive from it, and cannot be sent again.
     Lost { program: u64, name: Arc<str>, topic: Arc<str>, count: u64 },
+    /// So many events of a topic did not arrive from it, which has ended: they stay in its state folder.
+    Stays { name: Arc<str>, topic: Arc<str>, count: u64 },
     /// So many events of this program, which ends, were not received by another one.
     Unreceived { name: Arc<str>, topic: Arc<str>, count: u64 },
     /// So many events of this program, which ends, stay in its state folder for another one.

@@ -228,7 +228,11 @@ impl Exchange {
                     incoming.lacks().filter(|_| self.reads.get(topic).is_some_and(|topic| !topic.is_state))
                 {
                     let (name, topic) = (Arc::clone(&peer.name), Arc::clone(topic));
-                    self.actions.push(Action::Tell(News::Lost { program, name, topic, count }));
+                    // What a state folder keeps comes with the next start.
+                    self.actions.push(Action::Tell(match peer.start {
+                        0 => News::Lost { program, name, topic, count },
+                        _ => News::Stays { name, topic, count },
+                    }));
                 }
             }
             self.remember_past(program, &mut peer);

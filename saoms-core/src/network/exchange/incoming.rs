@@ -153,6 +153,12 @@ impl Incoming {
         (self.ask_at, self.last, self.said) = (None, 0, (0, 0));
     }
 
+    /// The sender has no messages after this one any more: gives how many of them were not delivered.
+    pub(super) fn drop_after(&mut self, number: u64) -> u64 {
+        self.waiting.retain(|waiting, _| *waiting <= number);
+        if self.next == 0 { 0 } else { self.last.saturating_sub(number.max(self.next - 1)) }
+    }
+
     /// The sender says where this program begins, once. Gives what can be delivered now.
     pub(super) fn welcome(&mut self, first: u64) -> Vec<Arrived> {
         if self.next != 0 {

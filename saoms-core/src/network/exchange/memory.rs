@@ -193,8 +193,15 @@ impl Exchange {
             if self.reads.get(&topic).is_none_or(|own| own.is_state) {
                 continue;
             }
-            let has_sent = |sends: &&Sends| sends.topic == *topic && incoming.next <= sends.before + 1;
-            if incoming.next <= 1 || alive.sends.iter().any(|sends| has_sent(&sends)) {
+            let before = alive.sends.iter().find(|sends| sends.topic == *topic).map_or(0, |sends| sends.before);
+            let is_older = incoming.next > 1 && incoming.next > before + 1;
+            // What it had said that it has sent, and does not have any more.
+            let count = incoming.drop_after(before);
+            if count > 0 {
+                let (name, topic) = (Arc::clone(&peer.name), Arc::clone(&topic));
+                self.actions.push(Action::Tell(News::Lost { program: alive.program, name, topic, count }));
+            }
+            if !is_older {
                 incoming.go_on();
                 peer.incoming.insert(topic, incoming);
                 continue;

@@ -382,6 +382,7 @@ impl Lossy {
                         News::GivenUp { program, .. } => format!("GivenUp {program}"),
                         News::NotKept { name, count } => format!("NotKept {name} {count}"),
                         News::Lost { program, topic, count, .. } => format!("Lost {program} {topic} {count}"),
+                        News::Stays { name, topic, count } => format!("Stays {name} {topic} {count}"),
                         News::Replaced { name } => format!("Replaced {name}"),
                         News::Unreceived { name, topic, count } => format!("Unreceived {name} {topic} {count}"),
                         News::Later { name, topic, count } => format!("Later {name} {topic} {count}"),

@@ -159,6 +159,41 @@ fn what_nobody_received_before_the_end_arrives_after_the_next_start() {
 }
 
 #[test]
+fn what_stays_in_the_state_folder_of_a_sender_that_ends_is_not_lost_for_its_readers() {
+    let mut network = pair();
+    network.is_cut = true;
+    (0..5).for_each(|_| network.send(0, "EVENTS"));
+    network.is_cut = false;
+    network.leave(0);
+    network.run(500 * MILLISECOND);
+    assert_eq!(told(&network, 1, &["Stays", "Left"]), ["Stays 0 EVENTS 5", "Left 0"]);
+    let again = network.start_again(0);
+    network.run(2_000 * MILLISECOND);
+    assert_eq!(heard(&network, &[0, again], &[1]), (1..=5).collect::<Vec<u64>>());
+    assert_eq!(told(&network, 1, &WRONG), Vec::<String>::new());
+    assert_eq!((network.programs[0].lost, network.programs[1].lost), (0, 0));
+}
+
+#[test]
+fn what_a_restored_state_folder_does_not_have_any_more_is_lost() {
+    let mut network = pair();
+    (0..5).for_each(|_| network.send(0, "EVENTS"));
+    network.run(500 * MILLISECOND);
+    let before = network.programs[0].folder.clone();
+    network.is_cut = true;
+    (0..5).for_each(|_| network.send(0, "EVENTS"));
+    network.is_cut = false;
+    network.leave(0);
+    network.run(500 * MILLISECOND);
+    let again = network.start_again_from(0, before);
+    network.run(1_000 * MILLISECOND);
+    network.send(again, "EVENTS");
+    network.run(1_000 * MILLISECOND);
+    assert_eq!(heard(&network, &[0, again], &[1]), [1, 2, 3, 4, 5, 11]);
+    assert_eq!(told(&network, 1, &["Lost"]), [format!("Lost {again} EVENTS 5")]);
+}
+
+#[test]
 fn a_late_sign_of_an_earlier_start_changes_nothing() {
     let mut network = Lossy::new(0, Weather::calm(), 1);
     network.join_with_folder();
