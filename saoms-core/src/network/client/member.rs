@@ -24,6 +24,7 @@ use super::super::{FROM_OUTSIDE, key};
 use super::FIRST_OF_TOPICS;
 use super::link::Link;
 use super::unsent::UnsentQueue;
+use linger::End;
 pub(super) use linger::Linger;
 
 /// Longest time between two looks at what is due, in nanoseconds.
@@ -242,7 +243,7 @@ impl<F: Fleet> Member<F> {
         }
         let is_agreed = self.exchange.is_done();
         if is_agreed {
-            self.tell_awaited(false);
+            self.tell_awaited(End::Agreed, false);
         }
         let is_done = is_agreed && self.exchange.is_complete() && self.undelivered.is_empty();
         let since = self.done_since.filter(|_| is_done);

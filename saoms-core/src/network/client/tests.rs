@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ffi::c_void;
 use std::ptr;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
 use std::thread::{self, ThreadId, sleep};
 use std::time::{Duration, Instant};
@@ -12,14 +12,14 @@ use saoms_abi::{Bytes, Sink, Status, TRANSPORT_VERSION, TransportEvents, Transpo
 use saoms_api::host::{SharedMessage, cdr};
 use saoms_api::{Cause, Header, Level, Time};
 
-use super::Client;
 use super::unsent::MOST_BYTES;
+use super::{ALIVE, Client};
 use crate::network::control::{ControlRequest, Reply};
-use crate::network::exchange::wire::{Envelope, Request, Vote};
+use crate::network::exchange::wire::{Alive, Envelope, Reads, Received, Request, Vote};
 use crate::network::exchange::{Remembered, Settings};
 use crate::network::port::{MOST_AT_ONCE, MOST_BYTES_AT_ONCE};
-use crate::network::transport::{Opened, SessionSettings, Transport, TransportSession};
-use crate::network::{Fleet, FromRun, Membership, Port, Undelivered};
+use crate::network::transport::{Delivered, Opened, Receiver as _, SessionSettings, Transport, TransportSession};
+use crate::network::{Fleet, FromRun, Membership, Port, Undelivered, key};
 
 /// Longest time for something that has to happen.
 const LONGEST: Duration = Duration::from_secs(60);
@@ -120,6 +120,7 @@ type Told = Vec<(String, Vec<String>)>;
 struct Idle {
     has_started: Arc<AtomicBool>,
     told: Arc<Mutex<Told>>,
+    lost: Arc<AtomicU64>,
     wire: Arc<Wire>,
 }
 
@@ -146,7 +147,9 @@ impl Fleet for Idle {
         self.told.lock().unwrap().push((text, self.wire.subscribed.lock().unwrap().clone()));
     }
 
-    fn count_lost(&self, _: u64, _: &str) {}
+    fn count_lost(&self, count: u64, _: &str) {
+        self.lost.fetch_add(count, Ordering::SeqCst);
+    }
 
     fn fail(&self, _: String) {}
 
@@ -175,12 +178,15 @@ struct Program {
     port: Arc<Port>,
     has_started: Arc<AtomicBool>,
     told: Arc<Mutex<Told>>,
-    _client: Client,
+    /// Number of the messages that were counted as lost.
+    lost: Arc<AtomicU64>,
+    client: Client,
 }
 
 fn program(url: &str) -> Program {
     let (wire, port, has_started, told) =
         (Arc::<Wire>::default(), Arc::<Port>::default(), Arc::default(), Arc::default());
+    let lost: Arc<AtomicU64> = Arc::default();
     WIRES.lock().unwrap().insert(url.to_owned(), Arc::clone(&wire));
     let settings = SessionSettings {
         url: url.to_owned(),
@@ -204,10 +210,15 @@ fn program(url: &str) -> Program {
         others: BTreeSet::new(),
         memory: None,
     };
-    let fleet = Idle { has_started: Arc::clone(&has_started), told: Arc::clone(&told), wire: Arc::clone(&wire) };
+    let fleet = Idle {
+        has_started: Arc::clone(&has_started),
+        told: Arc::clone(&told),
+        lost: Arc::clone(&lost),
+        wire: Arc::clone(&wire),
+    };
     let membership = Membership { url: url.to_owned(), ..Membership::default() };
     let client = Client::start(session, &port, member, membership, fleet).unwrap();
-    Program { wire, port, has_started, told, _client: client }
+    Program { wire, port, has_started, told, lost, client }
 }
 
 fn message(size: usize) -> FromRun {
@@ -299,4 +310,42 @@ fn a_few_short_messages_are_put_by_the_thread_that_leaves_them() {
     }
     let numbers = wire.numbers();
     assert!(numbers.is_sorted(), "{numbers:?}");
+}
+
+/// A sign of life of a program that reads what is sent, and has received all before this number.
+fn reader(port: &Port, number: u64, next: u64) {
+    let topic = || "EVENTS".to_owned();
+    let alive = Alive {
+        program: 2,
+        name: "reader".to_owned(),
+        number,
+        patience: 60_000,
+        reads: vec![Reads { topic: topic() }],
+        received: vec![Received { program: 1, topic: topic(), next }],
+        ..Alive::default()
+    };
+    let (key, message) = (key::alive(2), cdr::encode(&alive));
+    assert!(port.deliver(Delivered { token: ALIVE, key: &key, message: &message, attachment: &[] }));
+}
+
+/// A program with a reader that is there, and has not received what it sent.
+fn with_reader(url: &str) -> Program {
+    let program = program(url);
+    reader(&program.port, 1, 1);
+    let told = || program.told.lock().unwrap().iter().any(|(text, _)| text.contains("`reader` is on the network"));
+    wait("the reader is not heard", told);
+    program.port.put([message(8)].into_iter());
+    wait("nothing is put", || program.wire.numbers() == [1]);
+    program
+}
+
+#[test]
+fn who_is_there_is_waited_for_although_nobody_who_is_away_is() {
+    let Program { port, told, lost, client, .. } = with_reader("lingers");
+    thread::scope(|scope| {
+        scope.spawn(|| drop(client));
+        sleep(Duration::from_millis(500));
+        reader(&port, 2, 2);
+    });
+    assert_eq!(lost.load(Ordering::SeqCst), 0, "{:?}", told.lock().unwrap());
 }

@@ -8,10 +8,22 @@ use saoms_api::host::format_duration;
 use super::Member;
 use crate::network::Fleet;
 
-/// Time for which programs that make no progress are waited for, at most, once a signal has ended the run.
+/// Time for which programs that are there and make no progress are waited for, at least, and at most once a signal has
+/// ended the run.
 const HASTE: Duration = Duration::from_secs(5);
 /// Time after which it is told that programs are waited for which are there.
 const SHORT: Duration = Duration::from_secs(2);
+
+/// Why the end is waited with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// No work is left, and the run goes on.
+    Agreed,
+    /// The run has ended for another reason.
+    Over,
+    /// A signal has ended it.
+    InHaste,
+}
 
 /// How long the end has been waited with.
 #[derive(Debug)]
@@ -44,16 +56,30 @@ impl<F: Fleet> Member<F> {
             *linger = Linger { since: Instant::now(), lacked, ..*linger };
         }
         let passed = linger.since.elapsed();
-        self.tell_awaited(passed > SHORT);
-        passed <= if linger.is_in_haste { self.linger.min(HASTE) } else { self.linger }
+        let end = if linger.is_in_haste { End::InHaste } else { End::Over };
+        self.tell_awaited(end, passed > SHORT);
+        let is_there = self.exchange.awaits_answers() || self.exchange.awaited().iter().any(|(.., is_there)| *is_there);
+        passed <= self.longest(end, is_there)
+    }
+
+    /// Time for which programs are waited for that make no progress.
+    fn longest(&self, end: End, are_there: bool) -> Duration {
+        match (end, are_there) {
+            (End::InHaste, true) => HASTE,
+            (End::InHaste, false) => self.linger.min(HASTE),
+            // Who is there is about to receive what it lacks, however short others are waited for.
+            (_, true) => self.linger.max(HASTE),
+            (_, false) => self.linger,
+        }
     }
 
     /// Tells once for whom the end is waited with: programs that give no sign of life, or all of them.
-    pub(super) fn tell_awaited(&mut self, also_those_there: bool) {
+    pub(super) fn tell_awaited(&mut self, end: End, also_those_there: bool) {
         if self.has_told_awaited {
             return;
         }
         let awaited = self.exchange.awaited();
+        let are_there = awaited.iter().all(|(.., is_there)| *is_there);
         let lacking: Vec<String> = awaited
             .into_iter()
             .filter(|(.., is_there)| also_those_there || !is_there)
@@ -66,10 +92,16 @@ impl<F: Fleet> Member<F> {
             return;
         }
         self.has_told_awaited = true;
+        let longest = self.longest(end, are_there);
+        let (why, what_is_that) = match end {
+            End::Agreed => ("no work is left", ", the time of `--linger`"),
+            End::Over if longest == self.linger => ("the run has ended", " without progress, the time of `--linger`"),
+            End::Over | End::InHaste => ("the run has ended", " without progress"),
+        };
         let text = format!(
-            "no work is left, but {}: this program waits for it up to {}, the time of `--linger`; Ctrl-C ends it before",
+            "{why}, but {}: this program waits for it up to {}{what_is_that}; Ctrl-C ends it before",
             lacking.join(", and "),
-            format_duration(self.linger)
+            format_duration(longest)
         );
         self.fleet.tell(Level::Warning, text);
     }
