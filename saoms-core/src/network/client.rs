@@ -8,7 +8,8 @@ mod tests;
 mod unsent;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
-use std::thread::JoinHandle;
+use std::thread::{JoinHandle, sleep};
+use std::time::Duration;
 
 use saoms_api::host::contain::contained;
 
@@ -37,6 +38,9 @@ const FIRST_OF_TOPICS: u64 = 16;
 /// Time between two looks at what others say, in nanoseconds, after which the thread was held up, as by SIGSTOP: what
 /// they said meanwhile has not arrived yet.
 const HELD_UP: u64 = 500_000_000;
+
+/// Time between two looks at whether a run has started that cannot go on.
+const START_LOOK: Duration = Duration::from_millis(10);
 
 /// A program's part of a network. Dropping it leaves the network.
 #[derive(Debug)]
@@ -76,7 +80,13 @@ impl Client {
         port.let_take(at_once);
         let own = Arc::clone(port);
         let thread = std::thread::Builder::new().name("saoms-network".to_owned());
-        let thread = thread.spawn(move || run(&member, &own)).map_err(|error| error.to_string())?;
+        let begin = move || {
+            let ended = contained(|| run(&member, &own)).unwrap_or_else(|failure| Err(failure.to_string()));
+            if let Err(failure) = ended {
+                break_down(&member, &own, &failure);
+            }
+        };
+        let thread = thread.spawn(begin).map_err(|error| error.to_string())?;
         Ok(Client { port: Arc::clone(port), thread: Some(thread) })
     }
 }
@@ -92,7 +102,10 @@ impl Drop for Client {
 }
 
 /// What the thread of a network does.
-fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
+///
+/// # Errors
+/// What another thread did for this one has failed: how.
+fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) -> Result<(), String> {
     let mut ending: Option<Linger> = None;
     let mut member = lock(shared);
     let mut looked = member.now();
@@ -101,6 +114,9 @@ fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
         drop(member);
         port.wait(sleep, ending.is_some());
         member = lock(shared);
+        if let Some(failure) = member.broken.take() {
+            return Err(failure);
+        }
         let before = std::mem::replace(&mut looked, member.now());
         if looked - before > HELD_UP {
             member.exchange.hold_up(looked - before, looked);
@@ -127,6 +143,22 @@ fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) {
     let session = member.end();
     drop(member);
     drop(session);
+    Ok(())
+}
+
+/// The thread of the network has failed, by a fault of this program: nothing more leaves or comes, and the run fails.
+fn break_down<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port, failure: &str) {
+    port.end();
+    let mut member = lock(shared);
+    let text = member.break_down(failure);
+    let session = member.take_session();
+    drop(member);
+    drop(session);
+    // A run that starts cannot be ended yet.
+    while !lock(shared).fleet.has_started() && !port.is_closed() {
+        sleep(START_LOOK);
+    }
+    lock(shared).fleet.fail(text);
 }
 
 fn lock<F>(member: &Mutex<Member<F>>) -> MutexGuard<'_, Member<F>> {
@@ -140,13 +172,18 @@ impl<F: Fleet> AtOnce for Mutex<Member<F>> {
         }
         // Whoever has it may be about to put something, and the transport may deliver meanwhile.
         let Ok(mut member) = self.try_lock() else { return false };
-        member.take_at_once(delivered);
-        true
+        match contained(|| member.take_at_once(delivered)) {
+            Ok(()) => true,
+            Err(failure) => member.fail_at_once(failure.to_string()),
+        }
     }
 
     fn send(&self) -> bool {
         let Ok(mut member) = self.try_lock() else { return false };
         // A fault of the exchange ends no component that sends.
-        contained(|| member.send_at_once()).unwrap_or(false)
+        match contained(|| member.send_at_once()) {
+            Ok(is_sent) => is_sent,
+            Err(failure) => member.fail_at_once(failure.to_string()),
+        }
     }
 }

@@ -281,6 +281,11 @@ impl Port {
         self.wake(waiting);
     }
 
+    /// True once the end was asked for.
+    pub(super) fn is_closed(&self) -> bool {
+        self.lock().is_closed
+    }
+
     /// The thread of the network has ended: what the run leaves from now on is lost.
     pub(super) fn end(&self) {
         let mut waiting = self.lock();

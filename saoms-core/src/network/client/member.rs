@@ -87,6 +87,8 @@ pub(super) struct Member<F> {
     pub(super) link: Link,
     /// Why the run has to end as failed, once it runs.
     pub(super) failure: Option<String>,
+    /// The fault of what another thread did for that of the network.
+    pub(super) broken: Option<String>,
     /// The requests of operators.
     requests: Requests,
     port: Arc<Port>,
@@ -128,6 +130,7 @@ impl<F: Fleet> Member<F> {
             tickets: HashMap::new(),
             link: Link::default(),
             failure: None,
+            broken: None,
             requests: Requests::default(),
             port: Arc::clone(port),
             name: settings.name.clone(),
@@ -216,6 +219,32 @@ impl<F: Fleet> Member<F> {
             self.port.nudge();
         }
         true
+    }
+
+    /// What another thread did has failed: that of the network ends. False, since nothing was done.
+    pub(super) fn fail_at_once(&mut self, failure: String) -> bool {
+        self.broken = Some(failure);
+        self.port.nudge();
+        false
+    }
+
+    /// A fault of this program has ended the thread of the network: tells it, and gives what was told.
+    pub(super) fn break_down(&mut self, failure: &str) -> String {
+        let text = format!(
+            "an error of the program itself has ended its part of the network `{}`: nothing is sent and received any more: \
+             {failure}",
+            self.membership.url
+        );
+        self.fleet.tell(Level::Error, text.clone());
+        // How many messages others lack is not known any more.
+        self.fleet.count_lost(1, &text);
+        self.tickets.drain().for_each(|(_, ticket)| ticket.fill(Outcome::Dropped));
+        text
+    }
+
+    /// The session, which is to be closed.
+    pub(super) fn take_session(&mut self) -> Option<TransportSession> {
+        self.session.take()
     }
 
     /// Leaves the network. Gives the session, which is to be closed.

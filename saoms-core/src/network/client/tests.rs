@@ -13,7 +13,7 @@ use saoms_api::host::{SharedMessage, cdr};
 use saoms_api::{Cause, Header, Level, Time};
 
 use super::unsent::MOST_BYTES;
-use super::{ALIVE, Client};
+use super::{ALIVE, Client, FIRST_OF_TOPICS};
 use crate::network::control::{ControlRequest, Reply};
 use crate::network::exchange::wire::{Alive, Envelope, Reads, Received, Request, Vote};
 use crate::network::exchange::{Remembered, Settings};
@@ -121,6 +121,10 @@ struct Idle {
     has_started: Arc<AtomicBool>,
     told: Arc<Mutex<Told>>,
     lost: Arc<AtomicU64>,
+    /// Why the run was ended.
+    failed: Arc<Mutex<Vec<String>>>,
+    /// True if whatever delivers messages to it panics.
+    panics: Arc<AtomicBool>,
     wire: Arc<Wire>,
 }
 
@@ -130,6 +134,7 @@ impl Fleet for Idle {
     }
 
     fn deliver(&self, messages: &mut Undelivered) {
+        assert!(!self.panics.load(Ordering::SeqCst), "a fault of the fleet");
         messages.clear();
     }
 
@@ -151,7 +156,9 @@ impl Fleet for Idle {
         self.lost.fetch_add(count, Ordering::SeqCst);
     }
 
-    fn fail(&self, _: String) {}
+    fn fail(&self, reason: String) {
+        self.failed.lock().unwrap().push(reason);
+    }
 
     fn is_interrupted(&self) -> bool {
         false
@@ -180,13 +187,17 @@ struct Program {
     told: Arc<Mutex<Told>>,
     /// Number of the messages that were counted as lost.
     lost: Arc<AtomicU64>,
+    /// Why its run was ended.
+    failed: Arc<Mutex<Vec<String>>>,
+    /// Set to true, it panics where it delivers what arrived.
+    panics: Arc<AtomicBool>,
     client: Client,
 }
 
 fn program(url: &str) -> Program {
     let (wire, port, has_started, told) =
         (Arc::<Wire>::default(), Arc::<Port>::default(), Arc::default(), Arc::default());
-    let lost: Arc<AtomicU64> = Arc::default();
+    let (lost, failed, panics): (Arc<AtomicU64>, Arc<Mutex<Vec<String>>>, Arc<AtomicBool>) = Default::default();
     WIRES.lock().unwrap().insert(url.to_owned(), Arc::clone(&wire));
     let settings = SessionSettings {
         url: url.to_owned(),
@@ -214,11 +225,13 @@ fn program(url: &str) -> Program {
         has_started: Arc::clone(&has_started),
         told: Arc::clone(&told),
         lost: Arc::clone(&lost),
+        failed: Arc::clone(&failed),
+        panics: Arc::clone(&panics),
         wire: Arc::clone(&wire),
     };
     let membership = Membership { url: url.to_owned(), ..Membership::default() };
     let client = Client::start(session, &port, member, membership, fleet).unwrap();
-    Program { wire, port, has_started, told, lost, client }
+    Program { wire, port, has_started, told, lost, failed, panics, client }
 }
 
 fn message(size: usize) -> FromRun {
@@ -348,4 +361,27 @@ fn who_is_there_is_waited_for_although_nobody_who_is_away_is() {
         reader(&port, 2, 2);
     });
     assert_eq!(lost.load(Ordering::SeqCst), 0, "{:?}", told.lock().unwrap());
+}
+
+#[test]
+fn a_panic_in_the_part_of_a_network_fails_the_run_whichever_thread_it_is_in() {
+    let wakes = |port: &Port| reader(port, 2, 1);
+    let frame = |port: &Port| {
+        // It is taken by the thread that brings it, once that of the network sleeps.
+        let key = "saoms/2/topic/EVENTS/Other";
+        port.deliver(Delivered { token: FIRST_OF_TOPICS, key, message: b"", attachment: b"" });
+    };
+    for (url, cause) in [("panics", &wakes as &dyn Fn(&Port)), ("panics at once", &frame)] {
+        let Program { port, has_started, told, lost, failed, panics, client, .. } = with_reader(url);
+        panics.store(true, Ordering::SeqCst);
+        cause(&port);
+        let is_told = || told.lock().unwrap().iter().any(|(text, _)| text.contains("a fault of the fleet"));
+        wait("nothing is told", is_told);
+        assert!(failed.lock().unwrap().is_empty(), "it starts still");
+        has_started.store(true, Ordering::SeqCst);
+        wait("the run goes on", || !failed.lock().unwrap().is_empty());
+        assert!(failed.lock().unwrap()[0].contains(&format!("its part of the network `{url}`")));
+        assert_eq!(lost.load(Ordering::SeqCst), 1);
+        drop(client);
+    }
 }
