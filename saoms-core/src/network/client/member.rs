@@ -285,7 +285,7 @@ impl<F: Fleet> Member<F> {
         let Some(grants) = &self.membership.grants else { return };
         if self.granted_at.is_none_or(|at| at.elapsed() >= ACCESS_AGAIN) {
             self.granted_at = Some(Instant::now());
-            self.put(&key::access(), &cdr::encode(grants), None);
+            self.put(&key::access(), &cdr::encode(grants), None, true);
         }
     }
 

@@ -29,6 +29,8 @@ const LONGEST: Duration = Duration::from_secs(60);
 struct Wire {
     /// The key and the envelope of each message, and the thread that put it.
     put: Mutex<Vec<(String, Vec<u8>, ThreadId)>>,
+    /// The keys of what is urgent.
+    urgent: Mutex<Vec<String>>,
     subscribed: Mutex<Vec<String>>,
     is_full: AtomicBool,
 }
@@ -86,13 +88,21 @@ unsafe fn wire<'w>(session: *mut c_void) -> &'w Wire {
     unsafe { &*session.cast::<Wire>() }
 }
 
-unsafe extern "C" fn put(session: *mut c_void, key: Bytes, _: Bytes, attachment: Bytes, _: u32, _: Sink) -> Status {
+unsafe extern "C" fn put(
+    session: *mut c_void,
+    key: Bytes,
+    _: Bytes,
+    attachment: Bytes,
+    urgent: u32,
+    _: Sink,
+) -> Status {
     // SAFETY: the session is open, and the caller lends the bytes until this returns.
     let (wire, key, attachment) = unsafe { (wire(session), key.get_text(), attachment.get()) };
     if wire.is_full.load(Ordering::SeqCst) {
         return Status::FULL;
     }
     let by = thread::current().id();
+    wire.urgent.lock().unwrap().extend((urgent == 1).then(|| key.unwrap().to_owned()));
     wire.put.lock().unwrap().push((key.unwrap().to_owned(), attachment.unwrap().to_vec(), by));
     Status::OK
 }
@@ -384,4 +394,15 @@ fn a_panic_in_the_part_of_a_network_fails_the_run_whichever_thread_it_is_in() {
         assert_eq!(lost.load(Ordering::SeqCst), 1);
         drop(client);
     }
+}
+
+#[test]
+fn the_last_sign_of_life_of_a_program_overtakes_none_of_its_states() {
+    let Program { wire, client, .. } = program("leaves");
+    let signs = |all: &[String]| all.iter().filter(|key| **key == key::alive(1)).count();
+    wait("it gives no sign of life", || signs(&wire.urgent.lock().unwrap()) > 0);
+    drop(client);
+    let put: Vec<String> = wire.put.lock().unwrap().iter().map(|(key, ..)| key.clone()).collect();
+    assert_eq!(put.last(), Some(&key::alive(1)));
+    assert_eq!(signs(&put), signs(&wire.urgent.lock().unwrap()) + 1, "the last one is in order with all else");
 }

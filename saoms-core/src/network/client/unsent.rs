@@ -6,8 +6,15 @@ use std::sync::Arc;
 /// Bytes that wait for it, at most. What comes beyond is dropped, as networks drop it: who lacks it asks for it.
 pub(super) const MOST_BYTES: usize = 64 << 20;
 
-/// Something that is to be put: its key, the message, and the envelope of messages of components.
-pub(super) type Unsent = (String, Arc<[u8]>, Option<Arc<[u8]>>);
+/// Something that is to be put.
+#[derive(Debug)]
+pub(super) struct Unsent {
+    pub(super) key: String,
+    pub(super) bytes: Arc<[u8]>,
+    /// The envelope of messages of components.
+    pub(super) envelope: Option<Arc<[u8]>>,
+    pub(super) is_urgent: bool,
+}
 
 /// What waits for room in the transport, in order.
 #[derive(Debug, Default)]
@@ -38,6 +45,6 @@ impl UnsentQueue {
     }
 }
 
-fn size((key, bytes, envelope): &Unsent) -> usize {
+fn size(Unsent { key, bytes, envelope, .. }: &Unsent) -> usize {
     key.len() + bytes.len() + envelope.as_ref().map_or(0, |envelope| envelope.len()) + size_of::<Unsent>()
 }

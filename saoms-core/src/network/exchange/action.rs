@@ -57,6 +57,9 @@ pub enum Destination {
     Again(u64, Arc<str>),
     /// All programs: an [`Alive`](super::wire::Alive) of this one.
     Alive(u64),
+    /// The same, the last one of this program: it comes after all that was sent before, so that nothing of that is
+    /// late.
+    Leaves(u64),
     /// A program: an [`Again`](super::wire::Again).
     Ask(u64),
     /// A program: a [`Begins`](super::wire::Begins), with what this one runs.

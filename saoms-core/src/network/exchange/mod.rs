@@ -382,6 +382,7 @@ impl Exchange {
 
     fn put_alive(&mut self, alive: &Alive) {
         let bytes = cdr::encode(alive).into();
-        self.actions.push(Action::Put { to: Destination::Alive(self.settings.program), bytes });
+        let to = if alive.leaves { Destination::Leaves } else { Destination::Alive };
+        self.actions.push(Action::Put { to: to(self.settings.program), bytes });
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::host::cdr;
 
+use super::super::unsent::Unsent;
 use super::Member;
 use crate::network::control::Answer;
 use crate::network::exchange::{Action, Destination, Keys, News};
@@ -17,7 +18,7 @@ const UNREACHABLE: &str = "unreachable";
 impl<F: Fleet> Member<F> {
     pub(super) fn carry_out(&mut self) {
         let mut unsent = std::mem::take(&mut self.unsent);
-        unsent.put(|(key, bytes, envelope)| self.put(key, bytes, envelope.as_deref()));
+        unsent.put(|Unsent { key, bytes, envelope, is_urgent }| self.put(key, bytes, envelope.as_deref(), *is_urgent));
         self.unsent = unsent;
         self.act();
     }
@@ -90,7 +91,7 @@ impl<F: Fleet> Member<F> {
         let key = match to {
             Destination::Topic(topic, component, cell) => key::topic(topic, component, *cell),
             Destination::Again(program, topic) => key::again(*program, topic),
-            Destination::Alive(program) => key::alive(*program),
+            Destination::Alive(program) | Destination::Leaves(program) => key::alive(*program),
             Destination::Ask(program) => key::ask(*program),
             Destination::Runs(program) => key::runs(*program),
             Destination::Covered(program) => key::covered(*program),
@@ -99,20 +100,22 @@ impl<F: Fleet> Member<F> {
             Destination::Call(program) => key::call(*program),
             Destination::Reply(program) => key::reply(*program),
         };
-        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref()) {
-            self.unsent.push((key, bytes, envelope));
+        // The last sign of life overtakes no state.
+        let is_urgent = envelope.is_none() && !matches!(to, Destination::Leaves(_));
+        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref(), is_urgent) {
+            self.unsent.push(Unsent { key, bytes, envelope, is_urgent });
         }
     }
 
     pub(super) fn put_answer(&self, asker: u64, answer: &Answer) {
         // It is asked for again if there is no room for it.
-        self.put(&key::controlled(asker), &cdr::encode(answer), None);
+        self.put(&key::controlled(asker), &cdr::encode(answer), None, true);
     }
 
     /// Puts something on the network; false if there is no room for it.
-    pub(super) fn put(&self, key: &str, bytes: &[u8], envelope: Option<&[u8]>) -> bool {
+    pub(super) fn put(&self, key: &str, bytes: &[u8], envelope: Option<&[u8]>, is_urgent: bool) -> bool {
         let Some(session) = &self.session else { return true };
-        match session.put(key, bytes, envelope.unwrap_or_default(), envelope.is_none()) {
+        match session.put(key, bytes, envelope.unwrap_or_default(), is_urgent) {
             Ok(is_put) => is_put,
             // It is sent again when somebody lacks it.
             Err(error) => {

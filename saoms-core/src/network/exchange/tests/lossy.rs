@@ -455,7 +455,7 @@ impl Lossy {
                 Destination::Again(program, topic) if is_mine(program) => {
                     exchange.receive(topic, bytes, envelope.as_ref().unwrap(), now);
                 }
-                Destination::Alive(_) => exchange.hear(&cdr::decode(bytes).unwrap(), now),
+                Destination::Alive(_) | Destination::Leaves(_) => exchange.hear(&cdr::decode(bytes).unwrap(), now),
                 Destination::Call(program) if is_mine(program) => {
                     exchange.take_request(cdr::decode(bytes).unwrap(), now);
                 }
