@@ -34,7 +34,7 @@ const ROOM_AGAIN: Duration = Duration::from_millis(1);
 /// Messages of components after which the network gets what they say, at most.
 const MOST_AT_ONCE: usize = 1_024;
 /// Time that it takes the thread of components to send their messages, in nanoseconds, if a transport does not let it
-/// wait for room.
+/// wait for room. What is left then is for the thread of the network.
 const LONGEST_AT_ONCE: u64 = 300_000;
 /// Time after a longer wait in which that thread sends nothing itself, in nanoseconds.
 const CROWDED: u64 = 1_000_000_000;
@@ -57,6 +57,8 @@ pub(super) struct Member<F> {
     start: Instant,
     /// When the exchange has something to do.
     next: u64,
+    /// While another thread sends, the time from which on what is left is for that of the network.
+    hands_over_at: Option<u64>,
     /// Until when the thread of the network alone sends messages: the transport made another one wait for room.
     crowded_until: u64,
     program: u64,
@@ -113,6 +115,7 @@ impl<F: Fleet> Member<F> {
             unsent: UnsentQueue::default(),
             start: Instant::now(),
             next: 0,
+            hands_over_at: None,
             crowded_until: 0,
             program: settings.program,
             patience: settings.patience,
@@ -210,12 +213,14 @@ impl<F: Fleet> Member<F> {
             return false;
         }
         let Some(waiting) = self.port.take_short() else { return false };
+        self.hands_over_at = Some(begin + LONGEST_AT_ONCE);
         self.take(waiting);
+        self.hands_over_at = None;
         let end = self.now();
         if end - begin > LONGEST_AT_ONCE {
             self.crowded_until = end + CROWDED;
         }
-        if !self.has_time() {
+        if !self.has_time() || !self.unsent.is_empty() {
             self.port.nudge();
         }
         true

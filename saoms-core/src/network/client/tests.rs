@@ -33,6 +33,8 @@ struct Wire {
     urgent: Mutex<Vec<String>>,
     subscribed: Mutex<Vec<String>>,
     is_full: AtomicBool,
+    /// True if it takes long to put something.
+    is_slow: AtomicBool,
 }
 
 impl Wire {
@@ -97,13 +99,16 @@ unsafe extern "C" fn put(
     _: Sink,
 ) -> Status {
     // SAFETY: the session is open, and the caller lends the bytes until this returns.
-    let (wire, key, attachment) = unsafe { (wire(session), key.get_text(), attachment.get()) };
+    let (wire, key, attachment) = unsafe { (wire(session), key.get_text().unwrap(), attachment.get()) };
     if wire.is_full.load(Ordering::SeqCst) {
         return Status::FULL;
     }
+    if wire.is_slow.load(Ordering::SeqCst) {
+        sleep(Duration::from_millis(20));
+    }
     let by = thread::current().id();
-    wire.urgent.lock().unwrap().extend((urgent == 1).then(|| key.unwrap().to_owned()));
-    wire.put.lock().unwrap().push((key.unwrap().to_owned(), attachment.unwrap().to_vec(), by));
+    wire.urgent.lock().unwrap().extend((urgent == 1).then(|| key.to_owned()));
+    wire.put.lock().unwrap().push((key.to_owned(), attachment.unwrap().to_vec(), by));
     Status::OK
 }
 
@@ -245,10 +250,14 @@ fn program(url: &str) -> Program {
 }
 
 fn message(size: usize) -> FromRun {
+    message_of("Own", size)
+}
+
+fn message_of(component: &str, size: usize) -> FromRun {
     let header = Header { sender: 0, sent: Time::default(), cause: Cause::default() };
     FromRun::Message {
         topic: "EVENTS".into(),
-        component: "Own".into(),
+        component: component.into(),
         to: None,
         is_state: false,
         schema: 0,
@@ -405,4 +414,27 @@ fn the_last_sign_of_life_of_a_program_overtakes_none_of_its_states() {
     let put: Vec<String> = wire.put.lock().unwrap().iter().map(|(key, ..)| key.clone()).collect();
     assert_eq!(put.last(), Some(&key::alive(1)));
     assert_eq!(signs(&put), signs(&wire.urgent.lock().unwrap()) + 1, "the last one is in order with all else");
+}
+
+#[test]
+fn what_a_slow_transport_has_not_taken_is_left_to_the_thread_of_the_network() {
+    let Program { wire, port, .. } = &program("slow");
+    let own = thread::current().id();
+    let by_own = || wire.numbers_by_thread().iter().filter(|(_, by)| *by == own).count();
+    let mut sent = 0;
+    wait("the thread of the network does not sleep", || {
+        port.put([message(8)].into_iter());
+        by_own() > 0
+    });
+    wire.is_slow.store(true, Ordering::SeqCst);
+    let (all, before) = (wire.numbers().len(), by_own());
+    // Each is a message of its own on the network.
+    let several = |round: usize| (0..MOST_AT_ONCE).map(move |place| message_of(&format!("Own{place}"), 8 + round));
+    for round in 0..2 {
+        port.put(several(round));
+        sent += MOST_AT_ONCE;
+        wait("not all are put", || wire.numbers().len() >= all + sent);
+        assert!(by_own() <= before + 1, "it waits for one at most, and for none after that");
+    }
+    assert!(wire.numbers().is_sorted());
 }

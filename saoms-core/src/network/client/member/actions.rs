@@ -17,6 +17,10 @@ const UNREACHABLE: &str = "unreachable";
 
 impl<F: Fleet> Member<F> {
     pub(super) fn carry_out(&mut self) {
+        if self.hands_over_at.is_some() {
+            // What another thread had no time for is for that of the network.
+            return self.act();
+        }
         let mut unsent = std::mem::take(&mut self.unsent);
         unsent.put(|Unsent { key, bytes, envelope, is_urgent }| self.put(key, bytes, envelope.as_deref(), *is_urgent));
         self.unsent = unsent;
@@ -102,7 +106,8 @@ impl<F: Fleet> Member<F> {
         };
         // The last sign of life overtakes no state.
         let is_urgent = envelope.is_none() && !matches!(to, Destination::Leaves(_));
-        if !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref(), is_urgent) {
+        let is_late = self.hands_over_at.is_some_and(|at| self.now() > at);
+        if is_late || !self.unsent.is_empty() || !self.put(&key, &bytes, envelope.as_deref(), is_urgent) {
             self.unsent.push(Unsent { key, bytes, envelope, is_urgent });
         }
     }
