@@ -91,9 +91,22 @@ impl Client {
     }
 }
 
+impl Client {
+    /// Begins to leave the network. Others receive what they lack before the client is dropped; of several networks,
+    /// all at the same time.
+    pub fn close(&self) {
+        self.port.close(false);
+    }
+
+    /// Leaves the network, and waits for nobody: the run has not begun.
+    pub fn abandon(self) {
+        self.port.close(true);
+    }
+}
+
 impl Drop for Client {
     fn drop(&mut self) {
-        self.port.close();
+        self.port.close(false);
         if let Some(thread) = self.thread.take() {
             // Its panic was written to standard error.
             let _ = thread.join();
@@ -124,7 +137,8 @@ fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) -> Result<(), String> {
         // What was left until it had started is taken, too.
         let has_started = member.is_joining() && member.fleet.has_started();
         let waiting = port.take();
-        let (is_closed, has_time) = (waiting.is_closed, waiting.has_no_more_than_messages());
+        let (is_closed, is_abandoned) = (waiting.is_closed, waiting.is_abandoned);
+        let has_time = waiting.has_no_more_than_messages();
         member.take(waiting);
         if has_started {
             member.tell_joined();
@@ -134,7 +148,7 @@ fn run<F: Fleet>(shared: &Mutex<Member<F>>, port: &Port) -> Result<(), String> {
         }
         if is_closed {
             let ending = ending.get_or_insert_with(|| Linger::begin(&member));
-            if !member.lingers(ending) {
+            if is_abandoned || !member.lingers(ending) {
                 break;
             }
         }

@@ -138,6 +138,8 @@ pub(crate) struct Waiting {
     bytes: usize,
     pub(super) links: Vec<LinkChange>,
     pub(super) is_closed: bool,
+    /// True if nobody is waited for then.
+    pub(super) is_abandoned: bool,
     /// True once nobody takes anything any more.
     has_ended: bool,
     /// True if the thread is to look at its times again.
@@ -160,8 +162,9 @@ impl Waiting {
     /// Takes all of it. What is known of the thread of the network stays: another one may take it while that one
     /// sleeps.
     fn take(&mut self) -> Waiting {
-        let Waiting { is_closed, has_ended, sleeps, ref at_once, .. } = *self;
-        let rest = Waiting { is_closed, has_ended, sleeps, at_once: at_once.clone(), ..Waiting::default() };
+        let Waiting { is_closed, is_abandoned, has_ended, sleeps, ref at_once, .. } = *self;
+        let at_once = at_once.clone();
+        let rest = Waiting { is_closed, is_abandoned, has_ended, sleeps, at_once, ..Waiting::default() };
         let mut taken = std::mem::replace(self, rest);
         let (wants, beyond) = (std::mem::take(&mut taken.wants), std::mem::take(&mut taken.beyond));
         taken.from_run.extend(wants.into_iter().map(|(topic, cells)| FromRun::Wants { topic, cells }));
@@ -274,10 +277,13 @@ impl Port {
         self.wake(waiting);
     }
 
-    /// Ends the thread of the network.
-    pub(super) fn close(&self) {
+    /// Ends the thread of the network; at once, or when others have received what they lack.
+    pub(super) fn close(&self, is_abandoned: bool) {
         let mut waiting = self.lock();
         waiting.is_closed = true;
+        waiting.is_abandoned |= is_abandoned;
+        // Who knows of the end does not sleep for long, and would not wake for this.
+        waiting.is_nudged |= is_abandoned;
         self.wake(waiting);
     }
 

@@ -36,6 +36,7 @@ use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_control::{AlertList, FigureWatch, LossCounts, Recorder};
+use saoms_core::network::Client;
 use saoms_core::observe::{AdaptationWatch, InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
@@ -241,6 +242,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Err(error) => {
             let error = error.to_string();
             eprint(&format!("error: {}\n\nthe fleet did not start: nothing runs\n", one_line(&error)));
+            clients.into_iter().for_each(Client::abandon);
             delivery.finish();
             return Exit::Failed;
         }
@@ -272,7 +274,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         limit_patience(arguments.grace);
     }
     crate::guard::look_at_end();
-    // Others receive what the components sent last.
+    // Others receive what the components sent last, on all networks at the same time.
+    clients.iter().for_each(Client::close);
     drop(clients);
     let outcome = fleet.run_to_end().outcome;
     delivery.finish();

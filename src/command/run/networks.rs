@@ -156,16 +156,35 @@ impl Networks {
 
     /// Joins the networks, in the code that gets the control before components initialize. Waits for networks that are
     /// not there yet, until the end is asked for.
+    ///
+    /// # Errors
+    /// One cannot be joined. All others are left again.
     pub(super) fn join(
         self,
         handle: &Handle,
         signals: &Signalled,
         door: &Arc<Door>,
     ) -> Result<Vec<Client>, StartError> {
+        let mut clients = Vec::new();
+        match self.join_all(handle, signals, door, &mut clients) {
+            Ok(()) => Ok(clients),
+            Err(error) => {
+                clients.into_iter().for_each(Client::abandon);
+                Err(error)
+            }
+        }
+    }
+
+    fn join_all(
+        self,
+        handle: &Handle,
+        signals: &Signalled,
+        door: &Arc<Door>,
+        clients: &mut Vec<Client>,
+    ) -> Result<(), StartError> {
         for note in self.notes {
             handle.note(Level::Warning, note);
         }
-        let mut clients = Vec::new();
         for Network { transport, components, router, others, settings, membership } in self.all {
             let port: Arc<Port> = Arc::default();
             let wait = Wait { longest: self.wait, limit: self.limit, is_over: &|| signals.has_come() };
@@ -206,7 +225,7 @@ impl Networks {
             let client = Client::start(session, &port, member, membership, fleet);
             clients.push(client.map_err(|error| who.error(&error))?);
         }
-        Ok(clients)
+        Ok(())
     }
 }
 

@@ -438,3 +438,12 @@ fn what_a_slow_transport_has_not_taken_is_left_to_the_thread_of_the_network() {
     }
     assert!(wire.numbers().is_sorted());
 }
+
+#[test]
+fn a_program_whose_run_did_not_begin_waits_for_nobody() {
+    let Program { told, lost, client, .. } = with_reader("abandoned");
+    // Its reader never says that it has received anything, and gives signs of life for a minute.
+    client.abandon();
+    assert_eq!(lost.load(Ordering::SeqCst), 1);
+    assert!(!told.lock().unwrap().iter().any(|(text, _)| text.contains("this program waits")));
+}
