@@ -76,6 +76,14 @@ pub(super) struct LinkChange {
     pub(super) reason: String,
 }
 
+/// What is known of the link while a program enters.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LinkState {
+    pub(super) is_down: bool,
+    /// How often it was lost.
+    pub(super) losses: usize,
+}
+
 /// Who does the work of the thread of the network at once, on the thread that brings it: to wake another thread takes
 /// longer than the work. It waits neither for that thread nor for the transport.
 pub(super) trait AtOnce: Send + Sync {
@@ -318,6 +326,13 @@ impl Port {
     /// Takes what waits.
     pub(crate) fn take(&self) -> Waiting {
         self.lock().take()
+    }
+
+    /// What was said of the link, and was not taken.
+    pub(super) fn link_state(&self) -> LinkState {
+        let waiting = self.lock();
+        let losses = waiting.links.iter().filter(|link| !link.is_up).count();
+        LinkState { is_down: waiting.links.last().is_some_and(|link| !link.is_up), losses }
     }
 
     /// Takes the frames that wait, and leaves all else.

@@ -189,7 +189,8 @@ impl Networks {
             let port: Arc<Port> = Arc::default();
             let wait = Wait { longest: self.wait, limit: self.limit, is_over: &|| signals.has_come() };
             let who = Who { components: &components, router: router.as_deref(), settings: &settings };
-            let Some(session) = who.opened(transport, &port, handle, &wait)? else { break };
+            let Some((session, has_waited)) = who.opened(transport, &port, handle, &wait)? else { break };
+            let is_fresh = has_waited || !membership.peers.is_empty();
             let hooks = Hooks {
                 fleet: handle.clone(),
                 lost_link: self.lost_link,
@@ -214,7 +215,7 @@ impl Networks {
                 memory,
             };
             let tell = |text: String| handle.note(Level::Warning, text);
-            match enter(&session, &port, &mut member, tell, || signals.has_come()) {
+            match enter(&session, &port, &mut member, is_fresh, tell, || signals.has_come()) {
                 Ok(Entry::Free) => {}
                 Ok(Entry::Over) => break,
                 Err(why) => {
@@ -266,14 +267,14 @@ impl Who<'_> {
         StartError::Network { url: self.settings.url.clone(), error }
     }
 
-    /// A session of the network; `None` if the end was asked for before it was there.
+    /// A session of the network, and whether it was waited for; `None` if the end was asked for before it was there.
     fn opened(
         &self,
         transport: Transport,
         port: &Arc<Port>,
         handle: &Handle,
         wait: &Wait<'_>,
-    ) -> Result<Option<TransportSession>, StartError> {
+    ) -> Result<Option<(TransportSession, bool)>, StartError> {
         let url = &self.settings.url;
         let since = Instant::now();
         let mut told: Vec<String> = Vec::new();
@@ -284,7 +285,7 @@ impl Who<'_> {
                     if self.settings.listen {
                         handle.note(Level::Info, format!("the program listens at `{url}`"));
                     }
-                    return Ok(Some(session));
+                    return Ok(Some((session, !told.is_empty())));
                 }
                 Ok(Opened::Unreachable(why)) => why,
                 Err(error) => return Err(self.error(&error)),

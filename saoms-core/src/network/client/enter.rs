@@ -16,6 +16,12 @@ use crate::network::transport::TransportSession;
 
 /// Time in which others say that a component runs there: as long as a message and its answer take on a slow line.
 const ANSWERS: Duration = Duration::from_millis(500);
+/// The same where others may not be connected yet, which try that every half second.
+pub(super) const SETTLES: Duration = Duration::from_millis(1_500);
+/// Time after the last question in which it is answered.
+const ROUND_TRIP: Duration = Duration::from_millis(100);
+/// Time between two looks after which the program was held up, as by SIGSTOP, and has to ask again.
+const HELD_UP: Duration = Duration::from_millis(500);
 /// Time between two questions, and between two looks at what was answered.
 const AGAIN: Duration = Duration::from_millis(100);
 const LOOK: Duration = Duration::from_millis(5);
@@ -48,10 +54,14 @@ struct Running {
 ///
 /// # Errors
 /// A component runs in another program that is there: a text for people. Or the transport refuses a subscription.
+///
+/// `is_fresh`: the network was not there a moment ago, or has no router, so that others may not be connected yet. That
+/// is so for a router in any case, and the router says it to others while it has just begun.
 pub fn enter(
     session: &TransportSession,
     port: &Arc<Port>,
     settings: &mut Settings,
+    is_fresh: bool,
     mut tell: impl FnMut(String),
     is_over: impl Fn() -> bool,
 ) -> Result<Entry, String> {
@@ -61,11 +71,25 @@ pub fn enter(
     }
     session.subscribe(&key::runs(settings.program), RUNS)?;
     let components: Vec<String> = settings.components.iter().cloned().collect();
-    let since = Instant::now();
+    let mut wait = if is_fresh || session.is_router() { SETTLES } else { ANSWERS };
+    let begin = Instant::now();
+    let (mut since, mut looked) = (begin, begin);
+    let mut link = port.link_state();
     let mut asked: Option<Instant> = None;
     let mut running: BTreeMap<u64, Running> = BTreeMap::new();
     loop {
-        if asked.is_none_or(|asked| asked.elapsed() >= AGAIN) {
+        if std::mem::replace(&mut looked, Instant::now()).elapsed() > HELD_UP {
+            since = Instant::now();
+        }
+        let before = std::mem::replace(&mut link, port.link_state());
+        if link.is_down && !before.is_down {
+            tell("the link to the network is lost: the components begin when it is there again".to_owned());
+        }
+        if link.losses > before.losses || before.is_down {
+            (since, wait) = (Instant::now(), SETTLES);
+        }
+        let is_over_time = since.elapsed() >= wait && running.is_empty();
+        if !is_over_time && asked.is_none_or(|asked| asked.elapsed() >= AGAIN) {
             asked = Some(Instant::now());
             // What there is no room for is asked again.
             let begins = Begins { components: components.clone(), ..settings.begins() };
@@ -74,8 +98,11 @@ pub fn enter(
         for frame in port.take_frames() {
             let Ok(said) = cdr::decode::<Begins>(&frame.message) else { continue };
             if frame.token == RUNS {
-                let later = said.latest.max(said.began).saturating_add(1);
+                // The date of who answers without one of the components does not matter.
+                let began = if said.components.is_empty() { 0 } else { said.began };
+                let later = said.latest.max(began).saturating_add(1);
                 settings.began = settings.began.max(later.min(LARGEST_NUMBER));
+                wait = wait.max(since.elapsed() + Duration::from_millis(said.settles).min(SETTLES));
             }
             match frame.token {
                 RUNS if running.len() < MOST_PROGRAMS || running.contains_key(&said.program) => {
@@ -94,10 +121,14 @@ pub fn enter(
                     one.last = now;
                 }
                 // Of two that begin at once, one does.
-                BEGINS if settings.program < said.program => {
-                    let both = said.components.iter().filter(|one| settings.components.contains(*one));
-                    let runs = Begins { components: both.cloned().collect(), ..settings.begins() };
-                    if !runs.components.is_empty() {
+                BEGINS => {
+                    let is_both = |one: &&String| settings.program < said.program && settings.components.contains(*one);
+                    let components = said.components.iter().filter(is_both).cloned().collect();
+                    let settles =
+                        if session.is_router() { SETTLES.saturating_sub(begin.elapsed()) } else { Duration::ZERO };
+                    let settles = in_milliseconds(settles);
+                    let runs = Begins { components, settles, ..settings.begins() };
+                    if !runs.components.is_empty() || settles > 0 {
                         answer(session, said.program, &runs);
                     }
                 }
@@ -112,7 +143,8 @@ pub fn enter(
             ));
         }
         running.retain(|_, one| one.last.elapsed() <= one.patience);
-        if running.is_empty() && since.elapsed() >= ANSWERS {
+        let is_answered = asked.is_some_and(|asked| asked.elapsed() >= ROUND_TRIP);
+        if running.is_empty() && since.elapsed() >= wait && is_answered && !link.is_down {
             return Ok(Entry::Free);
         }
         if is_over() {
@@ -120,6 +152,11 @@ pub fn enter(
         }
         sleep(LOOK);
     }
+}
+
+/// A time as programs say it.
+pub(super) fn in_milliseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }
 
 /// Says to a program that is about to begin which of its components run in this one.

@@ -22,6 +22,7 @@ use super::super::ticket::Ticket;
 use super::super::transport::{Delivered, TransportSession};
 use super::super::{FROM_OUTSIDE, key};
 use super::FIRST_OF_TOPICS;
+use super::enter::{SETTLES, in_milliseconds};
 use super::link::Link;
 use super::unsent::UnsentQueue;
 use linger::End;
@@ -291,6 +292,17 @@ impl<F: Fleet> Member<F> {
         if self.granted_at.is_none_or(|at| at.elapsed() >= ACCESS_AGAIN) {
             self.granted_at = Some(Instant::now());
             self.put(&key::access(), &cdr::encode(grants), None, true);
+        }
+    }
+
+    /// Of a router, the time within which others connect to it, in milliseconds: it has just begun. With components of
+    /// its own it has waited for that.
+    fn settles(&self) -> u64 {
+        let is_router = self.session.as_ref().is_some_and(TransportSession::is_router);
+        if is_router && self.exchange.settings().components.is_empty() {
+            in_milliseconds(SETTLES.saturating_sub(self.start.elapsed()))
+        } else {
+            0
         }
     }
 

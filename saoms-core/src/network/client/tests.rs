@@ -1,5 +1,7 @@
 //! A program's part of a network over a transport that notes what it is told.
 
+mod entering;
+
 use std::collections::{BTreeSet, HashMap};
 use std::ffi::c_void;
 use std::ptr;
@@ -209,25 +211,27 @@ struct Program {
     client: Client,
 }
 
-fn program(url: &str) -> Program {
-    let (wire, port, has_started, told) =
-        (Arc::<Wire>::default(), Arc::<Port>::default(), Arc::default(), Arc::default());
-    let (lost, failed, panics): (Arc<AtomicU64>, Arc<Mutex<Vec<String>>>, Arc<AtomicBool>) = Default::default();
-    WIRES.lock().unwrap().insert(url.to_owned(), Arc::clone(&wire));
+/// A session on the wire of this url.
+fn session(url: &str, port: &Arc<Port>, is_router: bool) -> TransportSession {
     let settings = SessionSettings {
         url: url.to_owned(),
-        listen: false,
+        listen: is_router,
         peer: None,
         account: None,
         users: Vec::new(),
         access: Vec::new(),
         tls: None,
     };
-    let opened = TransportSession::open(Transport::of(&TABLE), &settings, Arc::clone(&port) as Arc<_>).unwrap();
+    let opened = TransportSession::open(Transport::of(&TABLE), &settings, Arc::clone(port) as Arc<_>).unwrap();
     let Opened::Session(session) = opened else { panic!("{opened:?}") };
-    let member = Settings {
+    session
+}
+
+/// The settings of the program.
+fn own() -> Settings {
+    Settings {
         program: 1,
-        began: 0,
+        began: 5,
         name: "own".to_owned(),
         patience: 1_000_000_000,
         limit: 1 << 20,
@@ -235,7 +239,16 @@ fn program(url: &str) -> Program {
         components: BTreeSet::from(["Own".to_owned()]),
         others: BTreeSet::new(),
         memory: None,
-    };
+    }
+}
+
+fn program(url: &str) -> Program {
+    let (wire, port, has_started, told) =
+        (Arc::<Wire>::default(), Arc::<Port>::default(), Arc::default(), Arc::default());
+    let (lost, failed, panics): (Arc<AtomicU64>, Arc<Mutex<Vec<String>>>, Arc<AtomicBool>) = Default::default();
+    WIRES.lock().unwrap().insert(url.to_owned(), Arc::clone(&wire));
+    let session = session(url, &port, false);
+    let member = own();
     let fleet = Idle {
         has_started: Arc::clone(&has_started),
         told: Arc::clone(&told),

@@ -52,7 +52,9 @@ impl<F: Fleet> Member<F> {
             }
             BEGINS => {
                 if let Ok(begins) = cdr::decode(&frame.message) {
-                    if let Some((session, runs)) = self.session.as_ref().zip(self.exchange.answer_begin(&begins, 0)) {
+                    if let Some((session, runs)) =
+                        self.session.as_ref().zip(self.exchange.answer_begin(&begins, self.settles()))
+                    {
                         answer(session, begins.program, &runs);
                     }
                     self.exchange.note_begin(begins);
