@@ -71,6 +71,10 @@ impl Exchange {
 
     /// Another program says which messages of a state topic are outdated.
     pub fn cover(&mut self, covered: &Covered, now: u64) {
+        // No event is outdated.
+        if self.reads.get(covered.topic.as_str()).is_none_or(|own| !own.is_state) {
+            return;
+        }
         let peer = self.peers.get_mut(&covered.program);
         let Some(incoming) = peer.and_then(|peer| peer.incoming.get_mut(covered.topic.as_str())) else { return };
         incoming.skip_outdated(covered);

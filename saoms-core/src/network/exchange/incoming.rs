@@ -183,14 +183,18 @@ impl Incoming {
         (missing, ready)
     }
 
-    /// Does not wait for messages of a state topic that are outdated.
+    /// Does not wait for messages of a state topic that are outdated: of those that the sender is known to have sent.
     pub(super) fn skip_outdated(&mut self, covered: &Covered) {
+        let end = covered.last.min(self.last) + 1;
+        if self.next == 0 {
+            return;
+        }
         let mut first = covered.first.max(self.next);
-        for number in covered.numbers.iter().copied().chain([covered.last.saturating_add(1)]) {
+        for number in covered.numbers.iter().copied().filter(|number| *number < end).chain([end]) {
             if number > first {
                 self.outdated.insert(first, number - 1);
             }
-            first = first.max(number.saturating_add(1));
+            first = first.max(number + 1);
         }
         self.advance();
     }

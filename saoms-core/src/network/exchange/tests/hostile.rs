@@ -11,7 +11,7 @@ use crate::network::exchange::wire::{
     Again, Alive, Around, AroundState, CellChange, CellName, Covered, Enclosed, Envelope, InCell, KnownState, Look,
     Reads, Received, Sends, Welcome,
 };
-use crate::network::exchange::{Exchange, OwnMessage, Settings};
+use crate::network::exchange::{Action, Destination, Exchange, OwnMessage, Settings};
 
 /// Numbers at the edges of what there is.
 fn edge() -> impl Strategy<Value = u64> {
@@ -118,6 +118,63 @@ fn said() -> impl Strategy<Value = Said> {
         1 => any::<bool>().prop_map(Said::Own),
         1 => (0..3_000_u64).prop_map(Said::Tick),
     ]
+}
+
+/// A program that another one tells of its newest message on both topics, which has this number.
+fn told(own: &mut Exchange, number: u64, last: u64) {
+    let sends = |(topic, is_state): (&str, bool)| Sends {
+        topic: topic.to_owned(),
+        is_state,
+        last,
+        oldest: 1,
+        ..Sends::default()
+    };
+    let welcome = |topic: &str| Welcome { reader: 0, topic: topic.to_owned(), first: 1 };
+    let alive = Alive {
+        program: 2,
+        name: "other".to_owned(),
+        number,
+        patience: 1_000,
+        sends: [("EVENTS", false), ("STATES", true)].map(sends).to_vec(),
+        welcomes: ["EVENTS", "STATES"].map(welcome).to_vec(),
+        ..Alive::default()
+    };
+    own.hear(&alive, 0);
+}
+
+#[test]
+fn one_message_that_says_that_all_is_outdated_cuts_no_program_off() {
+    let mut own = Exchange::new(Settings {
+        program: 0,
+        began: 0,
+        name: "own".to_owned(),
+        patience: 1_000 * MILLISECOND,
+        limit: 8 << 10,
+        linger: 10_000 * MILLISECOND,
+        components: BTreeSet::new(),
+        others: BTreeSet::new(),
+        memory: None,
+    });
+    own.read(&Arc::from("EVENTS"), false, 0);
+    own.read(&Arc::from("STATES"), true, 0);
+    told(&mut own, 1, 3);
+    for topic in ["EVENTS", "STATES"] {
+        let (topic, last) = (topic.to_owned(), u64::MAX);
+        own.cover(&Covered { program: 2, topic, first: 1, last, numbers: vec![u64::MAX] }, 0);
+    }
+    told(&mut own, 2, 5);
+    own.take_actions();
+    own.tick(100 * MILLISECOND);
+    let asked: Vec<Again> = own
+        .take_actions()
+        .into_iter()
+        .filter_map(|action| match action {
+            Action::Put { to: Destination::Ask(2), bytes } => cdr::decode(&bytes).ok(),
+            _ => None,
+        })
+        .collect();
+    let asked: Vec<_> = asked.iter().map(|again| (again.topic.as_str(), again.first, again.last)).collect();
+    assert_eq!(asked, [("EVENTS", 1, 5), ("STATES", 4, 5)], "states up to the third one may be outdated");
 }
 
 proptest! {
