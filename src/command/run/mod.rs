@@ -300,8 +300,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         RunStatus::Done | RunStatus::Elapsed | RunStatus::Stopped => Exit::Done,
         RunStatus::Incomplete | RunStatus::Failed => Exit::Failed,
         RunStatus::Interrupted if signals.has_come() => Exit::Interrupted,
-        // Its reader has seen enough.
-        RunStatus::Interrupted => Exit::Done,
+        // Its reader has seen enough; what has failed before has failed all the same.
+        RunStatus::Interrupted if outcome.reasons.is_empty() => Exit::Done,
+        RunStatus::Interrupted => Exit::Failed,
     }
 }
 

@@ -1,12 +1,12 @@
 //! Which program each component runs in: one that is killed begins anew in another program, and none runs twice.
 //!
 //! Of two programs with a component, the one has it that *began* later: each program says when it began. It has asked
-//! all others before, and the earlier one said nothing for its patience. So who was not heard then, as a program that
-//! was stopped, is known as the earlier one by all, whomever they heard first, and ends when it hears of the later one.
+//! all others before, and heard nothing of the earlier one. So who did not answer then, as a program that was stopped,
+//! is known as the earlier one by all, whomever they heard first, and ends when it hears of the later one.
 //!
-//! Dates of machines are compared that may differ. The patience of a program is a second or more: clocks that agree
-//! within a second are right. Where they do not, a date is still greater than those of all programs with the same
-//! components of which anybody knew that answered (`latest` of [`Begins`]).
+//! Dates of machines are compared that may differ. A program asks for half a second before it begins, and of two that
+//! ask at once, one waits: clocks that agree within half a second are right. Where they do not, a date is still greater
+//! than those of all programs with the same components of which anybody knew that answered (`latest` of [`Begins`]).
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
