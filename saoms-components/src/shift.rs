@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterfaceReference, Time, info};
+use saoms_api::{Class, Component, Context, Failure, Message, Properties, Saved, TaskInterfaceReference, Time, info};
 
 /// Properties of shifts.
 #[derive(Clone, Debug, Properties)]
@@ -27,14 +27,20 @@ pub struct ShiftProperties {
 /// periodic component. A new shift starts in the first execution that is due at its time or later. The first
 /// one starts, and is counted from, no earlier than the first execution, which a `delay` can put off.
 #[derive(Debug, Class)]
-#[class(name = "saoms.Shift", periodic)]
+#[class(name = "saoms.Shift", periodic, saves)]
 pub struct Shift {
     #[properties]
     properties: ShiftProperties,
     #[reference]
     tasks: Vec<TaskInterfaceReference>,
-    /// Time of the next shift; `None` after the last one.
-    next: Option<Time>,
+    roster: Roster,
+}
+
+/// The shifts so far, and the next one: what outlives an instance.
+#[derive(Clone, Debug, Default, Message)]
+struct Roster {
+    /// Time of the next shift, if there is another one.
+    next: Time,
     /// True from the first execution on.
     is_on_duty: bool,
     /// End of the present shift.
@@ -46,30 +52,45 @@ impl Component for Shift {
     type Properties = ShiftProperties;
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.next = Some(context.now() + self.properties.start);
+        self.roster.next = context.now() + self.properties.start;
         Ok(())
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        if !std::mem::replace(&mut self.is_on_duty, true) {
-            self.next = self.next.max(Some(context.now()));
+        let (roster, now) = (&mut self.roster, context.now());
+        if !std::mem::replace(&mut roster.is_on_duty, true) {
+            roster.next = roster.next.max(now);
         }
-        let is_due = |time: &Time| *time <= context.now();
-        let (due, is_over) = (self.next.filter(is_due), self.ends.take_if(|end| is_due(end)).is_some());
-        // Another shift without a pause goes on with the same components.
-        if is_over && due.is_none() {
-            info!(context, "shift {} is over for {}", self.begun, self.names());
-        }
-        let Some(due) = due else { return Ok(()) };
         let ShiftProperties { work, pause, shifts, .. } = self.properties;
+        let is_over = roster.ends.take_if(|end| *end <= now).is_some();
+        let is_due = roster.next <= now && shifts.is_none_or(|shifts| roster.begun < shifts);
+        // Another shift without a pause goes on with the same components.
+        if is_over && !is_due {
+            info!(context, "shift {} is over for {}", self.roster.begun, self.names());
+        }
+        if !is_due {
+            return Ok(());
+        }
         let milliseconds = u64::try_from(work.as_millis()).unwrap_or(u64::MAX);
         for task in &self.tasks {
             task.schedule_for(context, milliseconds)?;
         }
-        self.begun = self.begun.saturating_add(1);
-        self.ends = Some(context.now() + work);
-        self.next = Some(due + work + pause).filter(|_| shifts.is_none_or(|shifts| self.begun < shifts));
-        info!(context, "starts shift {} of {} s for {}", self.begun, work.as_secs_f64(), self.names());
+        let roster = &mut self.roster;
+        roster.begun = roster.begun.saturating_add(1);
+        roster.ends = Some(now + work);
+        roster.next = roster.next + work + pause;
+        info!(context, "starts shift {} of {} s for {}", self.roster.begun, work.as_secs_f64(), self.names());
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::of(&self.roster))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        if let Some(roster) = saved.read()? {
+            self.roster = roster;
+        }
         Ok(())
     }
 }

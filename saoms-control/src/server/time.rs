@@ -11,15 +11,21 @@ use serde_json::json;
 
 use super::answer::{Answer, Refusal, done, json_text};
 use super::fleet::ControlledFleet;
+use super::orders::commit;
 
 type Fleet = State<Arc<ControlledFleet>>;
 
 pub(super) async fn pause(State(fleet): Fleet) -> Answer {
-    stands(fleet.handle.pause())
+    let at = fleet.handle.pause();
+    if at.is_ok() {
+        commit(fleet).await?;
+    }
+    stands(at)
 }
 
 pub(super) async fn resume(State(fleet): Fleet) -> Answer {
     fleet.handle.resume().map_err(Refusal::unprocessable)?;
+    commit(fleet).await?;
     done()
 }
 

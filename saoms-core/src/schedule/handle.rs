@@ -174,7 +174,8 @@ impl Handle {
 
     /// Pauses the run before the executions that are due next: no component executes, no time of the run passes, and
     /// nothing is missed. Hardware hears no heartbeat, and stops by itself. Orders and messages from outside still take
-    /// effect, and components are asked for their status. Gives the time at which the run stands.
+    /// effect, and components are asked for their status. With a [store](Handle::use_store), a later program pauses,
+    /// too, until it is resumed. Gives the time at which the run stands.
     ///
     /// # Errors
     /// The run ends.

@@ -125,6 +125,16 @@ impl Engine {
         if self.real && self.hold != NEVER { self.clock.now_without_pause() } else { now }
     }
 
+    /// Lets the time of the run stand before the executions that are due next; gives the present time.
+    fn begin_pause(&mut self) -> u64 {
+        self.clock.hold();
+        let now = self.clock.now();
+        // Executions of a time belong together.
+        self.hold = if self.clock.is_virtual() { self.next_instant(now) } else { now };
+        self.note_pause(true, now);
+        now
+    }
+
     fn note_hold(&mut self, now: u64, text: String) {
         self.note(now, Occurrence::Note { level: Level::Info, text });
     }
@@ -137,16 +147,20 @@ pub(super) fn pause(shared: &Shared) -> Result<Time, HoldError> {
         return Err(HoldError::Ending);
     }
     if engine.hold == NEVER {
-        shared.clock.hold();
-        let now = shared.clock.now();
-        // Executions of a time belong together.
-        engine.hold = if shared.clock.is_virtual() { engine.next_instant(now) } else { now };
+        let now = engine.begin_pause();
         engine.note_hold(now, "paused".to_owned());
     }
     let at = engine.hold;
     engine.wake = true;
     shared.release(engine);
     Ok(Time::from_nanos(at))
+}
+
+/// Pauses a run that was paused when an earlier program left it, before it starts.
+pub(super) fn still_pause(shared: &Shared) {
+    let mut engine = shared.lock();
+    engine.begin_pause();
+    shared.release(engine);
 }
 
 /// Lets a paused run go on.
@@ -158,6 +172,7 @@ pub(super) fn resume(shared: &Shared) -> Result<(), HoldError> {
     if engine.hold != NEVER {
         let now = shared.clock.now();
         engine.end_pause();
+        engine.note_pause(false, now);
         engine.restart_pace();
         engine.note_hold(now, "resumed".to_owned());
         engine.wake = true;

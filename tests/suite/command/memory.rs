@@ -43,11 +43,11 @@ impl Dice {
 }
 
 /// Starts the program. What it goes on from, and what it told, stay in the folder, for a look after a failure.
-fn start(folder: &Path) -> Program {
+pub(super) fn start(folder: &Path) -> Program {
     start_with(folder, &[])
 }
 
-fn start_with(folder: &Path, more: &[&str]) -> Program {
+pub(super) fn start_with(folder: &Path, more: &[&str]) -> Program {
     let _ = fs::remove_file(folder.join("socket"));
     let (state, before) = (folder.join("state"), folder.join("before"));
     fs::create_dir_all(&before).unwrap();

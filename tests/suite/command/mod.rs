@@ -6,6 +6,7 @@ mod events;
 mod explain;
 mod fmt;
 mod graph;
+mod goes_on;
 mod history;
 mod log;
 mod memory;

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use saoms_api::{Level, Time};
 
 use crate::schedule::engine::memory::{Recollection, is_of_memory, recall_report};
+use crate::schedule::hold;
 use crate::schedule::inject::add_commits;
 use crate::schedule::networks::kept::url_of;
 use crate::schedule::os::thread::start_thread;
@@ -66,7 +67,7 @@ pub(crate) fn use_store(shared: &Arc<Shared>, store: Store) -> io::Result<()> {
     *shared.store_thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
     recall_report(&found, &mut shared.sections());
     let recollection = shared.lock().use_store(found, Arc::clone(&queue));
-    if let Some(Recollection { time, components, was_done }) = recollection {
+    if let Some(Recollection { time, components, was_done, is_paused }) = recollection {
         shared.clock.begin_at(time);
         let from = Time::from_nanos(time);
         let plural = if components == 1 { "" } else { "s" };
@@ -77,6 +78,11 @@ pub(crate) fn use_store(shared: &Arc<Shared>, store: Store) -> io::Result<()> {
             );
         }
         shared.note(Level::Info, text);
+        if is_paused {
+            hold::still_pause(shared);
+            let text = "is still paused, as before the end of the last program: `saoms resume` lets it go on";
+            shared.note(Level::Warning, text.to_owned());
+        }
     }
     // A fleet has one store: it is set once, before the components initialize.
     let _ = shared.store.set(queue);

@@ -45,23 +45,28 @@ fn a_change_is_applied_and_what_is_the_same_goes_on() {
 
 #[test]
 fn a_lost_state_has_to_be_allowed() {
-    let clock = |period: &str| {
+    let robots = "resources.robotEnvironment";
+    let navigated = |period: &str| {
         fleet().replace(
             "</composite>",
             &format!(
-                "<component name=\"Shift\"><implementation.java class=\"saoms.Shift\"/>\
-                 <property name=\"ID\">Shift</property><property name=\"period\">{period}</property>\
-                 <property name=\"work\">10s</property><reference name=\"tasks\" target=\"Robot2\"/></component></composite>"
+                "<component name=\"Gps\"><implementation.java class=\"{robots}.GPS\"/></component>\
+                 <component name=\"Carrier\"><implementation.java class=\"{robots}.Robot\"/>\
+                 <property name=\"ID\">Carrier</property><reference name=\"updatePosition\" target=\"Gps\"/></component>\
+                 <component name=\"Navigator\"><implementation.java class=\"{robots}.Navigator\"/>\
+                 <property name=\"ID\">Navigator</property><property name=\"period\">{period}</property>\
+                 <reference name=\"move\" target=\"Carrier\"/></component>\
+                 </composite>"
             ),
         )
     };
-    let running = Running::start(&clock("100"), &["--stay"]);
-    write(&running, &clock("200"));
+    let running = Running::start(&navigated("100"), &["--stay"]);
+    write(&running, &navigated("200"));
     let planned = running.ask(&["plan", "other.composite"]);
     assert_eq!(code(&planned), 3, "{}", text(&planned));
-    assert!(stdout(&planned).contains("~ Shift is replaced: loses its state\n"), "{}", stdout(&planned));
+    assert!(stdout(&planned).contains("~ Navigator is replaced: loses its state\n"), "{}", stdout(&planned));
     let refused = running.refused(&["apply", "other.composite"]);
-    let expected = "error: the state of `Shift` would be lost: its class saves none\n  \
+    let expected = "error: the state of `Navigator` would be lost: its class saves none\n  \
                     = help: allow that with `--allow-loss`\n\nnothing has changed\n";
     assert!(refused.ends_with(expected), "{refused}");
     let done = running.told(&["apply", "other.composite", "--allow-loss"]);

@@ -11,8 +11,8 @@ use saoms_api::{Message, Saved};
 
 use super::forms::{
     COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, HeldForm, INPUTS, InputsForm, KNOWN, MessageForm,
-    NAMES, NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, StateForm,
-    TEXTS, UnreadForm, WAITING,
+    NAMES, NAMES_ELSEWHERE, PAUSED, PRESENT, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS,
+    STATES, StateForm, TEXTS, UnreadForm, WAITING,
 };
 use super::{CUT, Ending, Engine, NEVER, SharedText, Writing};
 use crate::bus::TopicId;
@@ -25,6 +25,7 @@ use crate::store::{Batch, Change, Contents, LaterChanges};
 /// A cut, as it is handed over to the thread of the store.
 pub(super) struct Cut {
     run: RunForm,
+    is_paused: bool,
     /// By their paths; `None` of those that are no part of the fleet any more.
     components: Vec<(Arc<str>, Option<ComponentCut>)>,
     states: Vec<(Arc<str>, Sent)>,
@@ -98,6 +99,7 @@ impl Engine {
         let cut = Cut {
             texts,
             run: RunForm { time: now, records, end },
+            is_paused: self.memory.is_paused,
             components,
             counters: counters.collect(),
             names: self.new_names(),
@@ -330,7 +332,8 @@ impl Differences<'_> {
 impl LaterChanges for Cut {
     fn add_to(&self, changes: &mut Vec<Change>, known: &Contents) {
         let mut differences = Differences { changes, known, schemas: HashSet::new(), hashes: HashMap::new() };
-        differences.put_form(RUN, 0, &self.run);
+        differences.put_form(RUN, PRESENT, &self.run);
+        differences.put(RUN, PAUSED, self.is_paused.then_some(&[1]));
         for (name, component) in &self.components {
             let entry = format!("{COMPONENT}{name}");
             let Some(ComponentCut { saved, form, delayed }) = component else {

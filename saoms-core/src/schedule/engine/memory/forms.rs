@@ -3,8 +3,10 @@
 
 use saoms_api::Message;
 
-/// The run: one entry.
+/// The run: one entry; and something more while an operator pauses it.
 pub(super) const RUN: &str = "(run)\n";
+pub(super) const PRESENT: u64 = 0;
+pub(super) const PAUSED: u64 = 1;
 /// A component, by its path: what it saved, what the engine knows of it, and the time of its first execution as long as
 /// that is to come.
 pub(super) const COMPONENT: &str = "(component)\n";

@@ -54,6 +54,8 @@ pub(crate) struct Memory {
     /// Number of cuts that were made, and of those that are committed.
     made: u64,
     committed: u64,
+    /// True while an operator pauses the run, also at its end, which ends the pause.
+    is_paused: bool,
     /// Number of those who must not see a cut before they have finished; for how long the last cut waits for them, and
     /// until when.
     guards: usize,
@@ -321,6 +323,12 @@ impl Engine {
         if !std::mem::replace(&mut self.slots[index as usize].memory.differs, true) {
             self.memory.differing.push(index);
         }
+        self.note_difference(now);
+    }
+
+    /// Notes that an operator pauses the run, or lets it go on.
+    pub(in crate::schedule) fn note_pause(&mut self, is_paused: bool, now: u64) {
+        self.memory.is_paused = is_paused;
         self.note_difference(now);
     }
 

@@ -11,8 +11,8 @@ use serde_json::Value;
 
 use super::forms::{
     COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
-    NAMES_ELSEWHERE, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES, SavedForm,
-    StateForm, TEXTS, WAITING,
+    NAMES_ELSEWHERE, PAUSED, PRESENT, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES,
+    SavedForm, StateForm, TEXTS, WAITING,
 };
 use super::{Counter, Engine, NEVER, SetForm, SharedText};
 use crate::bus::TopicId;
@@ -34,6 +34,7 @@ use crate::store::{Contents, Entries, StoreQueue};
 #[derive(Debug, Default)]
 pub(crate) struct Recalled {
     run: RunForm,
+    is_paused: bool,
     components: HashMap<String, RecalledComponent>,
     /// The paths of components by their numbers: of this program, and of others.
     pub(in crate::schedule) names: Vec<String>,
@@ -59,6 +60,8 @@ pub(crate) struct Recollection {
     pub(crate) components: usize,
     /// True if the run had ended since its work was done.
     pub(crate) was_done: bool,
+    /// True if an operator had paused it.
+    pub(crate) is_paused: bool,
 }
 
 /// The form under a key.
@@ -75,7 +78,7 @@ fn texts(found: &Contents, entry: &str) -> Vec<String> {
 impl Recalled {
     /// What a state folder has of the memory, if it has any.
     fn read(found: &Contents) -> Option<Recalled> {
-        let run = form(found.of(RUN), 0)?;
+        let run = form(found.of(RUN), PRESENT)?;
         let schemas: BTreeMap<u64, String> = found
             .of(SCHEMAS)
             .into_iter()
@@ -84,6 +87,7 @@ impl Recalled {
             .collect();
         let mut recalled = Recalled {
             run,
+            is_paused: found.of(RUN).is_some_and(|entries| entries.contains_key(&PAUSED)),
             names: texts(found, NAMES),
             elsewhere: texts(found, NAMES_ELSEWHERE),
             events: form(found.of(WAITING), EVENTS).unwrap_or_default(),
@@ -157,6 +161,7 @@ impl Engine {
             time: recalled.time(),
             components: recalled.components.len(),
             was_done: recalled.run.end == "Done",
+            is_paused: recalled.is_paused,
         };
         self.memory.recalled = Some(Box::new(recalled));
         Some(recollection)
