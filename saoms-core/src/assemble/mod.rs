@@ -5,11 +5,13 @@
 //! fleet and starting it are one thing. A plan is data: making it touches nothing, and needs neither a clock nor a
 //! running fleet.
 
+mod fingerprint;
 mod order;
 mod plan;
 #[cfg(test)]
 mod tests;
 
+pub use fingerprint::fingerprint;
 pub(crate) use order::providers_first;
 pub(crate) use plan::value;
 pub use plan::{ChangePlan, Difference, LiveUpdate, Replacement};

@@ -197,9 +197,14 @@ fn is_same(
     after: Option<&PropertyValue>,
 ) -> bool {
     let ((Some(only), None) | (None, Some(only))) = (before, after) else { return before == after };
+    is_default(component, name, only)
+}
+
+/// True if this is the value that a property has unless a composite gives it another one.
+pub(super) fn is_default(component: &ComponentSpec, name: &str, value: &PropertyValue) -> bool {
     let declared = component.class.declaration().property(name);
     let default = declared.and_then(|one| one.check(one.default.as_deref()?).ok());
-    default.is_some_and(|default| *only == PropertyValue::from(default))
+    default.is_some_and(|default| *value == PropertyValue::from(default))
 }
 
 /// The value of a property that a component has; `None` where it has the default.

@@ -4,7 +4,7 @@ use std::time::Duration;
 use saoms_api::host::{PropertyValue, Registration};
 use saoms_api::{Class, Component, Failure, Properties};
 
-use super::{ChangePlan, Difference, members};
+use super::{ChangePlan, Difference, fingerprint, members};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties, Wire, WireTarget};
 use saoms_lang::registry::Registry;
 
@@ -102,6 +102,7 @@ fn plan(current: &str, wanted: &str) -> String {
         format!("={}", new(after))
     }));
     assert_eq!(plan.is_empty(), plan.keep.len() == words.len());
+    assert_eq!(plan.is_empty(), fingerprint(&current) == fingerprint(&wanted));
     words.join(" ")
 }
 
@@ -119,6 +120,7 @@ fn to_nothing_all_end_users_first() {
 #[test]
 fn what_is_the_same_stays_wherever_it_stands() {
     assert_eq!(plan("A box 5\nB box >A", "B box >A\nX bag\nA box 5"), "+X =A =B");
+    assert_eq!(plan("A box 5\nB box >A", "B box >A\nA box 5"), "=A =B");
 }
 
 #[test]
@@ -131,7 +133,9 @@ fn what_differs_is_replaced_and_says_why() {
     assert_eq!(plan("A box >B\nB box", "A box >B"), "-B ~A(Reference(\"r0\"))");
     let (before, mut after) = (assembly("A belt"), assembly("A belt"));
     assert!(ChangePlan::between(&members(&before), &members(&after)).is_empty());
+    assert_eq!(fingerprint(&before), fingerprint(&after));
     after.components[0].task.as_mut().unwrap().period = Duration::from_millis(11);
+    assert_ne!(fingerprint(&before), fingerprint(&after));
     assert_eq!(ChangePlan::between(&members(&before), &members(&after)).replace[0].differences, [Difference::Task]);
 }
 

@@ -14,6 +14,7 @@ use saoms_lang::project::{Compilation, INPUT};
 use saoms_tools::diagnostics::from_folder;
 use serde_json::Value;
 
+use super::applied::LastApplied;
 use super::reload::libraries;
 use super::web::WebAccesses;
 use super::{RunArguments, settled};
@@ -32,6 +33,8 @@ pub(super) struct FleetChanges {
     run: RunPolicy,
     /// The web servers that calls were allowed to.
     web: WebAccesses,
+    /// The last one that was applied, where there is a state folder.
+    applied: Option<LastApplied>,
     present: Mutex<PresentFleet>,
 }
 
@@ -62,16 +65,17 @@ pub(super) struct WantedFleet {
 
 impl FleetChanges {
     /// Those of a run, whose composites say this of it and call these servers, with its libraries, its other files, and
-    /// the time at which they were read.
+    /// the time at which they were read; and what was applied before, where there is a state folder.
     pub(super) fn new(
         handle: Handle,
         arguments: &RunArguments,
         (run, web): (RunPolicy, WebAccesses),
         (libraries, read, since): (Vec<PathBuf>, Vec<PathBuf>, SystemTime),
+        applied: Option<LastApplied>,
     ) -> FleetChanges {
         let present = PresentFleet { files: arguments.fleet.clone(), libraries, read, since };
         let (settled, node) = (settled(arguments), arguments.node.clone());
-        FleetChanges { handle, settled, node, run, web, present: Mutex::new(present) }
+        FleetChanges { handle, settled, node, run, web, applied, present: Mutex::new(present) }
     }
 
     fn lock(&self) -> MutexGuard<'_, PresentFleet> {
@@ -99,7 +103,7 @@ impl FleetChanges {
         let mut wanted = self.read(&files, request.coloured, &request.folder)?;
         let wait = request.wait().unwrap_or(ChangeOptions::WAIT);
         let (allow_loss, by) = (request.allow_loss, request.by.clone());
-        let options = |withdrawal| ChangeOptions { allow_loss, wait, by, withdrawal };
+        let options = |withdrawal| ChangeOptions { allow_loss, wait, by, withdrawal, keeps: None };
         self.settle(&mut wanted, &files, withdrawal.map(options));
         if wanted.is_withdrawn {
             let text = "a change of the fleet is taken back: whoever asked for it does not wait any more";
@@ -186,7 +190,8 @@ impl FleetChanges {
             );
         }
         answer.plan = Some(self.handle.plan(assembly));
-        let Some(options) = options else { return };
+        let Some(mut options) = options else { return };
+        options.keeps = self.applied.as_ref().and_then(|one| one.of(assembly, &files.files, options.by.clone()));
         match self.handle.apply(assembly, options) {
             Ok(changed) => {
                 answer.applied = Some(true);

@@ -1,6 +1,7 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
 mod alerts;
+mod applied;
 mod arguments;
 mod changes;
 mod console;
@@ -36,6 +37,7 @@ use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_control::{AlertList, FigureWatch, LossCounts, Recorder};
+use saoms_core::assemble::fingerprint;
 use saoms_core::network::Client;
 use saoms_core::observe::{AdaptationWatch, InvariantWatch, Observer};
 use saoms_core::report::RunStatus;
@@ -50,6 +52,7 @@ use crate::fleet::{DiagnosticReport, compiled, files_read, has_components};
 use crate::guard::has_own_end;
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use alerts::AlertDelivery;
+use applied::LastApplied;
 pub(crate) use arguments::{ConsoleStyle, RunArguments};
 use changes::FleetChanges;
 use console::Console;
@@ -202,6 +205,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(watch.clone().map(|watch| watch as Arc<dyn Observer>));
     let mut notes = Vec::new();
     let whole = all_nodes(arguments, &assembly);
+    let starting = store.is_some().then(|| fingerprint(&assembly));
     let control = match Control::of(arguments, &figures, &mut notes) {
         Ok(control) => control,
         Err(exit) => return exit,
@@ -216,6 +220,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let before = |handle: &Handle| {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
         numbers.outlive(handle);
+        let applied = starting.map(|starting| LastApplied::outlive(handle, starting, &arguments.fleet.files));
         alerts.outlive(handle);
         watch.iter().filter(|_| handle.recalled().is_some()).for_each(|watch| watch.goes_on());
         // One that goes on from where its work was done would end before it hears of more.
@@ -229,7 +234,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
         clients = networks.join(handle, &signals, &door)?;
         let url = control.as_ref().and_then(|control| control.url().map(str::to_owned));
-        let changing = FleetChanges::new(handle.clone(), arguments, (policy, accesses), (libraries, watched, since));
+        let ran = (libraries, watched, since);
+        let changing = FleetChanges::new(handle.clone(), arguments, (policy, accesses), ran, applied);
         let changing = changes.insert(Arc::new(changing));
         server =
             control.and_then(|control| control.serve(handle, &signals, &numbers, losses.clone(), &alerts, changing));

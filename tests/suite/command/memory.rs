@@ -33,13 +33,18 @@ pub(super) fn pieces(socket: &Path) -> io::Result<(u64, u64)> {
 }
 
 /// Numbers that look like chance.
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
-    fn below(&mut self, end: u64) -> u64 {
+    pub(super) fn below(&mut self, end: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % end
     }
+}
+
+/// Number of kills of a test.
+pub(super) fn kills() -> u64 {
+    std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS)
 }
 
 /// Starts the program. What it goes on from, and what it told, stay in the folder, for a look after a failure.
@@ -99,7 +104,7 @@ fn kill_at_random_moments(folder: &str, crashes: bool) {
         fleet = crashing;
     }
     fs::write(folder.join("f.composite"), fleet).unwrap();
-    let kills = std::env::var("SAOMS_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(KILLS);
+    let kills = kills();
     let socket = folder.join("socket");
     let mut dice = Dice(7);
     // One after the other: who crashes twice before it has executed loses what it heard.

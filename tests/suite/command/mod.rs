@@ -1,5 +1,6 @@
 //! The command as a user meets it.
 
+mod applied;
 mod contributions;
 mod ending;
 mod events;

@@ -101,7 +101,7 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: &Assembly, options: ChangeOpti
             return Err(ChangeError::LosesState { unsaved, anew });
         }
     }
-    let record = ChangeRecord { by: options.by.clone(), plan: planned };
+    let record = ChangeRecord { by: options.by.clone(), plan: planned, keeps: options.keeps.clone() };
     record.unless_made(shared, carry_out(shared, wanted, &plan, &options, &record))
 }
 

@@ -2,6 +2,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use crate::schedule::engine::memory::SharedText;
+
 /// What a change of a running fleet may do.
 ///
 /// ```
@@ -19,6 +21,9 @@ pub struct ChangeOptions {
     pub by: Option<String>,
     /// The way to take the change back while somebody else waits for it.
     pub withdrawal: ChangeWithdrawal,
+    /// What a text that [outlives the program](super::Handle::share_text) is from the instant on at which the change
+    /// takes effect: a later program has both or none.
+    pub keeps: Option<(SharedText, String)>,
 }
 
 /// The way to take back a change of a running fleet until it is made.
@@ -46,7 +51,7 @@ impl ChangeOptions {
 impl Default for ChangeOptions {
     fn default() -> ChangeOptions {
         let (wait, withdrawal) = (ChangeOptions::WAIT, ChangeWithdrawal::default());
-        ChangeOptions { allow_loss: false, wait, by: None, withdrawal }
+        ChangeOptions { allow_loss: false, wait, by: None, withdrawal, keeps: None }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the journal has of changes: who changed the fleet, what changed, and what came of it.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 
 use saoms_lang::assembly::ComponentSpec;
 use serde_json::{Map, Value};
@@ -9,6 +9,7 @@ use super::{ChangeError, HandedOver, PlannedChanges, PlannedReplacement};
 use crate::assemble::ChangePlan;
 use crate::journal::FLEET_CHANGED;
 use crate::schedule::engine::Engine;
+use crate::schedule::engine::memory::SharedText;
 use crate::schedule::inject::OUTSIDE_NAME;
 use crate::schedule::shared::Shared;
 
@@ -17,6 +18,8 @@ pub(super) struct ChangeRecord {
     /// Who.
     pub(super) by: Option<String>,
     pub(super) plan: PlannedChanges,
+    /// What outlives the program of a change that is made.
+    pub(super) keeps: Option<(SharedText, String)>,
 }
 
 impl ChangeRecord {
@@ -33,14 +36,23 @@ impl ChangeRecord {
             Some(PlannedReplacement { component, class, differences: Vec::new(), state })
         });
         let plan = PlannedChanges { replaced: replaced.collect(), ..PlannedChanges::default() };
-        ChangeRecord { by: by.map(str::to_owned), plan }
+        ChangeRecord { by: by.map(str::to_owned), plan, keeps: None }
     }
 
     /// Writes to the journal what came of it.
-    pub(super) fn write(&self, engine: &mut Engine, time: u64, outcome: Result<(), &ChangeError>) {
+    fn write(&self, engine: &mut Engine, time: u64, outcome: Result<(), &ChangeError>) {
         if !self.plan.is_empty() {
             let content = (FLEET_CHANGED, self.text(outcome), self.values(outcome));
             engine.record_notice(time, OUTSIDE_NAME, content, saoms_api::Cause::default());
+        }
+    }
+
+    /// Notes that the change takes effect now.
+    pub(super) fn is_made(&self, engine: &mut Engine, time: u64) {
+        self.write(engine, time, Ok(()));
+        if let Some((text, now)) = &self.keeps {
+            text.lock().unwrap_or_else(PoisonError::into_inner).clone_from(now);
+            engine.note_difference(time);
         }
     }
 

@@ -415,7 +415,7 @@ impl<'a> Change<'a> {
             plan: PlannedChanges::default(),
         };
         if let Some(record) = self.record {
-            record.write(&mut engine, now, Ok(()));
+            record.is_made(&mut engine, now);
         }
         for &number in &self.begun {
             engine.take_vote(number, now);
