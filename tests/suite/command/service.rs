@@ -160,6 +160,14 @@ fn systemd_finds_nothing_wrong_with_the_unit() {
     let alerts = page.split("```ini\n").nth(2).unwrap().split("```").next().unwrap();
     let started = |unit: &str| unit.lines().rfind(|line| line.starts_with("ExecStart=/")).unwrap().to_owned();
     assert_eq!(started(alerts).replace(" --alerts", ""), started(unit));
+    // What it restarts goes on, and the service beside it reads what it writes.
+    let command_line = started(unit);
+    let words: Vec<&str> = command_line.split(' ').collect();
+    let value = |option: &str| words.iter().skip_while(|word| **word != option).nth(1).copied();
+    let history = page.split("```ini\n").nth(3).unwrap().split("```").next().unwrap();
+    let reads = started(history).split(' ').nth(1).unwrap().to_owned();
+    assert_eq!(value("--history"), Some(reads.as_str()));
+    assert_eq!(value("--state"), Some("/var/lib/saoms/hall"));
     // The command line of the unit is one that there is.
     let line = unit.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/saoms ")).unwrap();
     let line = line.replace("/etc/saoms/hall.composite", "composites/hall.composite");
