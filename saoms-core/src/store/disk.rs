@@ -77,7 +77,7 @@ impl DiskFile {
             let begin = |file: &mut File| {
                 file.set_len(0)?;
                 file.write_all(group::HEAD)?;
-                file.sync_all()?;
+                sync_all(file)?;
                 sync_folder(folder)
             };
             begin(&mut file).map_err(failed("be written", &log))?;
@@ -100,7 +100,23 @@ fn make(folder: &Path) -> io::Result<()> {
 
 /// Waits until the names of a folder's files are on the disk.
 fn sync_folder(folder: &Path) -> io::Result<()> {
-    File::open(folder)?.sync_all()
+    sync_all(&File::open(folder)?)
+}
+
+/// Waits until a file is on the disk, with all that the system knows of it; or a folder, with the names of its files.
+fn sync_all(file: &File) -> io::Result<()> {
+    file.sync_all()?;
+    #[cfg(test)]
+    super::tests::power::note_synced(file);
+    Ok(())
+}
+
+/// Waits until the bytes of a file are on the disk.
+fn sync_data(file: &File) -> io::Result<()> {
+    file.sync_data()?;
+    #[cfg(test)]
+    super::tests::power::note_synced(file);
+    Ok(())
 }
 
 /// The empty file that becomes the log when that is written anew.
@@ -129,7 +145,7 @@ impl LogFile for DiskFile {
     }
 
     fn sync(&mut self) -> io::Result<()> {
-        self.file.sync_data()
+        sync_data(&self.file)
     }
 
     fn look(&self) -> io::Result<()> {
@@ -168,7 +184,7 @@ impl LogFile for DiskFile {
         let write = || {
             let mut file = spare.map_or_else(|| new_log(&self.folder), Ok)?;
             file.write_all(bytes)?;
-            file.sync_all()?;
+            sync_all(&file)?;
             // Nobody else uses it yet; a file system without locks has none for the other file, either.
             let _ = file.try_lock();
             Ok(file)

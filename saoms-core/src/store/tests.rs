@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+pub(super) mod power;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, ErrorKind};
