@@ -9,11 +9,15 @@ use saoms_api::Failure;
 use saoms_api::extension::{HistoryRegistration, HistoryTable, RunHistory};
 use saoms_api::host::TopicDeclaration;
 use saoms_core::journal::ComponentName;
-use saoms_core::observe::{Beginning, Interest, Observer, Occurrence, Records, RunEvent, SentMessage};
+use saoms_core::observe::{Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage};
 use saoms_core::report::RunReport;
+use saoms_core::schedule::{Handle, SharedText};
 
 use crate::HistoryError;
 use crate::writer::{Writer, Written, open};
+
+/// The name under which a state folder has that by which histories know it.
+const STATE: &str = "history";
 
 /// What a history says of a run beside what the run itself says.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -98,6 +102,36 @@ impl History {
     /// The number of rows that could not be written.
     pub fn lost(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.lost)
+    }
+
+    /// Has the runs of a fleet with a state folder know of each other, once its [store](Handle::use_store) is used:
+    /// where this one goes on from that of an earlier program, what both did is that of the later one.
+    pub fn outlive(&self, handle: &Handle) {
+        let kept = SharedText::default();
+        let left = handle.share_text(STATE, &kept).filter(|left| !left.is_empty());
+        let from_s = handle.recalled().map(|time| time.as_secs_f64());
+        self.write(0, |state| {
+            let Some(writer) = &mut state.writer else { return Ok(()) };
+            let name = left.map_or_else(|| writer.chance_name(), Ok)?;
+            kept.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&name);
+            writer.has_state(&name, from_s)?;
+            for source in self.sources.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+                for table in source.tables.iter().enumerate() {
+                    for (time_s, row) in writer.earlier(table)? {
+                        source.history.goes_on(time_s, &row);
+                    }
+                }
+            }
+            Ok(())
+        });
+    }
+
+    /// Counts what has not even come here.
+    fn lack(&self, lost: u64) {
+        if lost > 0 {
+            self.lost.fetch_add(lost, Ordering::Relaxed);
+            self.state.lock().unwrap_or_else(PoisonError::into_inner).untold += lost;
+        }
     }
 
     /// Writes so many rows, or counts them as lost.
@@ -218,11 +252,13 @@ impl Observer for History {
         }
     }
 
+    fn lost(&self, lost: LostEvents) {
+        // Not each message is a row, but nobody knows which of these would have been.
+        self.lack(lost.alerts + lost.messages);
+    }
+
     fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
-        if records.lost > 0 {
-            self.lost.fetch_add(records.lost, Ordering::Relaxed);
-            self.state.lock().unwrap_or_else(PoisonError::into_inner).untold += records.lost;
-        }
+        self.lack(records.lost);
         let rows = (records.entries.len() + records.joined.len()) as u64;
         self.write(rows, |state| {
             let Some(writer) = &mut state.writer else { return Ok(()) };

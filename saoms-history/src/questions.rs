@@ -92,7 +92,7 @@ fn reason(error: &rusqlite::Error) -> String {
     }
 }
 
-fn value(value: ValueRef<'_>) -> HistoryValue {
+pub(crate) fn value(value: ValueRef<'_>) -> HistoryValue {
     match value {
         ValueRef::Null => HistoryValue::Null,
         ValueRef::Integer(value) => HistoryValue::Integer(value),

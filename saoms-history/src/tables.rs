@@ -38,7 +38,26 @@ pub(crate) const OWN: &[OwnTable] = &[
             OwnColumn("ended", "TEXT", "the same of its end; empty while it runs, or if the program was killed"),
             OwnColumn("time_s", "REAL", "how long it took, in seconds of the run"),
             OwnColumn("status", "TEXT", "how it ended, as in its report: `done`, `incomplete`, `failed` ..."),
-            OwnColumn("lost", "INTEGER NOT NULL DEFAULT 0", "number of rows that could not be written"),
+            OwnColumn(
+                "state",
+                "TEXT",
+                "its state folder, by a name made by chance: runs with the same one go on from each other",
+            ),
+            OwnColumn(
+                "goes_on_from_s",
+                "REAL",
+                "the time of the run from which it goes on from its state folder; empty if it began anew",
+            ),
+            OwnColumn(
+                "undone_from_s",
+                "REAL",
+                "the time of the run from which a later run goes on: what this one did from then on, that one does again",
+            ),
+            OwnColumn(
+                "lost",
+                "INTEGER NOT NULL DEFAULT 0",
+                "number of rows that could not be written, with all alerts and messages that were lost before",
+            ),
         ],
         keys: "",
     },

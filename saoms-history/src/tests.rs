@@ -1,13 +1,17 @@
 //! What is written of a run, and what becomes of rows that cannot be.
 
 use std::path::Path;
-use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex};
 
 use rusqlite::Connection;
-use saoms_api::Time;
 use saoms_api::extension::HistoryValue;
-use saoms_core::observe::{Beginning, Observer, Occurrence, RunEvent};
+use saoms_api::host::Registration;
+use saoms_api::{Class, Component, Context, Failure, Time, Work};
+use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent};
+use saoms_core::schedule::{RunningFleet, Settings};
+use saoms_lang::project::Project;
+use saoms_lang::registry::Registry;
 
 use crate::{History, HistoryError, HistoryEvents, HistoryRun, Questions};
 
@@ -108,6 +112,78 @@ fn rows_that_cannot_be_written_are_counted_and_told_until_they_can() {
     history.event(&alert(5, "a", Some("is stuck")));
     let row = |number, subject: &str| vec![HistoryValue::Integer(number), HistoryValue::Text(subject.to_owned())];
     assert_eq!(ask(&path, "select alert, subject from alerts order by alert"), [row(1, "b"), row(2, "a")]);
+}
+
+/// Waits in its first event until somebody lets it go on, and counts all that come.
+#[derive(Default)]
+struct Slow {
+    goes_on: Mutex<bool>,
+    wake: Condvar,
+    alerts: AtomicU64,
+    lost: AtomicU64,
+}
+
+impl Observer for Slow {
+    fn event(&self, event: &RunEvent) {
+        drop(self.wake.wait_while(self.goes_on.lock().unwrap(), |goes_on| !*goes_on).unwrap());
+        self.alerts.fetch_add(u64::from(matches!(event.what, Occurrence::Alert { .. })), Ordering::Relaxed);
+    }
+
+    fn lost(&self, lost: LostEvents) {
+        self.lost.fetch_add(lost.alerts, Ordering::Relaxed);
+    }
+}
+
+/// Raises an alert again and again.
+#[derive(Class)]
+#[class(name = "test.Bell", periodic)]
+struct Bell {
+    rung: u64,
+}
+
+/// Alerts in each execution, and executions: more than may wait.
+const AT_ONCE: u64 = 1000;
+const TIMES: u64 = 70;
+
+impl Component for Bell {
+    type Properties = ();
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Bell { rung: 0 })
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        for _ in 0..AT_ONCE {
+            self.rung += 1;
+            context.alert("bell", "door", format_args!("rings {} times", self.rung));
+        }
+        context.vote(if self.rung >= AT_ONCE * TIMES { Work::Done } else { Work::Open });
+        Ok(())
+    }
+}
+
+#[test]
+fn what_is_lost_before_it_comes_here_is_counted_as_rows_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("h.db");
+    let run = HistoryRun { name: "hall".to_owned(), version: "1".to_owned(), ..HistoryRun::default() };
+    let history = Arc::new(History::open(&path, run, None, Box::new(Told::default())).unwrap());
+    let (slow, mut registry) = (Arc::new(Slow::default()), Registry::new());
+    registry.add(Registration::of::<Bell>()).unwrap();
+    let text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"hall\" \
+                targetNamespace=\"urn:hall\"><component name=\"Bell\"><implementation.rust class=\"test.Bell\"/>\
+                <property name=\"ID\">Bell</property><property name=\"period\">1</property></component></composite>";
+    let assembly = Project::new().text("hall.composite", text).in_memory().compile(&registry).output.unwrap();
+    let observers: Vec<Arc<dyn Observer>> = vec![slow.clone(), history.clone()];
+    let fleet = RunningFleet::start(assembly, Settings::default(), observers).unwrap();
+    fleet.wait_for_end();
+    *slow.goes_on.lock().unwrap() = true;
+    slow.wake.notify_all();
+    fleet.run_to_end();
+    let (heard, lost) = (slow.alerts.load(Ordering::Relaxed), slow.lost.load(Ordering::Relaxed));
+    assert!(lost > 0 && heard + lost >= AT_ONCE * TIMES, "{heard} heard, {lost} lost");
+    assert_eq!(history.lost().load(Ordering::Relaxed), lost);
+    assert_eq!(ask(&path, "select lost from runs"), [[HistoryValue::Integer(lost as i64)]]);
 }
 
 #[test]

@@ -10,8 +10,9 @@ use saoms_core::report::RunReport;
 
 use crate::HistoryError;
 use crate::history::HistoryRun;
+use crate::questions::value;
 use crate::retention::Retention;
-use crate::tables::{APPLICATION, NAME, OWN, VERSION, statements};
+use crate::tables::{APPLICATION, NAME, OWN, OwnColumn, VERSION, statements};
 
 /// Time for which a statement waits for another program that writes.
 const BUSY: Duration = if cfg!(test) { Duration::from_millis(20) } else { Duration::from_secs(2) };
@@ -63,6 +64,13 @@ pub(crate) fn open(path: &Path, tables: &[&'static HistoryTable]) -> Result<Conn
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(of_database)?;
     for own in OWN {
         transaction.execute(&own.statement(), []).map_err(of_database)?;
+        // A file of an earlier version lacks some.
+        let known = transaction.prepare(&format!("SELECT * FROM {} LIMIT 0", own.name)).map_err(of_database)?;
+        let known: Vec<String> = known.column_names().into_iter().map(str::to_owned).collect();
+        for OwnColumn(column, kind, _) in own.columns.iter().filter(|one| !known.iter().any(|known| known == one.0)) {
+            let add = format!("ALTER TABLE {} ADD COLUMN {column} {kind}", own.name);
+            transaction.execute(&add, []).map_err(of_database)?;
+        }
     }
     transaction.execute(NAME, []).map_err(of_database)?;
     for table in tables {
@@ -125,6 +133,43 @@ impl Writer {
         });
         let (inserts, retention) = (inserts.collect(), keep.map(Retention::of));
         Ok(Writer { connection, run, inserts, retention })
+    }
+
+    /// A name by chance, which no other has.
+    pub(crate) fn chance_name(&self) -> Result<String, rusqlite::Error> {
+        self.connection.query_row("SELECT lower(hex(randomblob(16)))", [], |row| row.get(0))
+    }
+
+    /// The run has the state of this name, and goes on from there at a time, if it does.
+    pub(crate) fn has_state(&mut self, state: &str, from_s: Option<f64>) -> Written {
+        let transaction = self.connection.transaction()?;
+        let change = "UPDATE runs SET state = ?, goes_on_from_s = ? WHERE run = ?";
+        transaction.execute(change, params![state, from_s, self.run])?;
+        if let Some(from_s) = from_s {
+            let change = "UPDATE runs SET undone_from_s = min(coalesce(undone_from_s, ?1), ?1) \
+                          WHERE state = ?2 AND run < ?3";
+            transaction.execute(change, params![from_s, state, self.run])?;
+        }
+        transaction.commit()
+    }
+
+    /// The rows that earlier runs with the same state wrote of what this one goes on with, and their times.
+    pub(crate) fn earlier(
+        &self,
+        (place, table): (usize, &HistoryTable),
+    ) -> Result<Vec<(f64, HistoryRow)>, rusqlite::Error> {
+        let columns: String = table.columns.iter().map(|column| format!(", t.{}", column.name)).collect();
+        let question = format!(
+            "SELECT t.time_s{columns} FROM {} t JOIN runs r USING (run) JOIN runs own ON own.run = ? AND own.state = r.state \
+             WHERE r.run < own.run AND (r.undone_from_s IS NULL OR t.time_s < r.undone_from_s) ORDER BY t.time_s",
+            table.name
+        );
+        let mut statement = self.connection.prepare(&question)?;
+        let row = |row: &rusqlite::Row<'_>| {
+            let values = (1..=table.columns.len()).map(|column| row.get_ref(column).map(value));
+            Ok((row.get(0)?, HistoryRow { table: place, values: values.collect::<Result<_, _>>()? }))
+        };
+        statement.query_map([self.run], row)?.collect()
     }
 
     pub(crate) fn components<'a>(

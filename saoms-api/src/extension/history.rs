@@ -12,6 +12,12 @@ pub trait RunHistory: Send {
     /// Takes in a message that a component sent on such a topic, and gives the rows that follow from it; `component` is
     /// the path of the component.
     fn message(&mut self, topic: &str, component: &str, message: &SharedMessage) -> Vec<HistoryRow>;
+
+    /// Takes in a row that an earlier program wrote of what this one goes on with, with its time in seconds of the run:
+    /// before the first message, the rows of each table in the order of their times.
+    fn goes_on(&mut self, time_s: f64, row: &HistoryRow) {
+        let _ = (time_s, row);
+    }
 }
 
 /// A table of the history. Each of its rows also has the number of the run, `run`, and the time of the message that it

@@ -161,7 +161,7 @@ pub const METRICS: &[Metric] = metrics! {
         |measured, samples| samples.add(&[], measured.alerts.undelivered as f64);
     "saoms_log_lost_total" counter [] "Lines that could not be written to the file of the log."
         |measured, samples| samples.add(&[], measured.losses.log_lines.load(Ordering::Relaxed) as f64);
-    "saoms_history_lost_total" counter [] "Rows that could not be written to the history."
+    "saoms_history_lost_total" counter [] "Rows that could not be written to the history, with alerts and messages that were lost before."
         |measured, samples| samples.add(&[], measured.losses.history_rows.load(Ordering::Relaxed) as f64);
     "saoms_control_clients" gauge [] "Clients that are connected."
         |measured, samples| samples.add(&[], measured.clients.open.load(Ordering::Relaxed) as f64);

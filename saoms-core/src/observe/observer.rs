@@ -5,6 +5,7 @@ use std::time::Duration;
 use saoms_api::host::TopicDeclaration;
 use saoms_api::{Failure, Level, Time};
 
+use super::queue::Lost;
 use super::{FleetSample, Occurrence, RunEvent, RunProgress, SampleRate, SentMessage};
 use crate::journal::{ComponentName, JournalEntry};
 use crate::report::RunReport;
@@ -51,6 +52,12 @@ pub trait Observer: Send + Sync + 'static {
     /// A component sent a message on a topic that is wanted. Messages without a reader are included.
     fn message(&self, sent: &SentMessage) {
         let _ = sent;
+    }
+
+    /// Events and messages came faster than the observers took them in, and are lost: in real time alone. Lines of the
+    /// log and the console are not counted.
+    fn lost(&self, lost: LostEvents) {
+        let _ = lost;
     }
 
     /// True if samples should have what state topics retain whose messages have this name. Called when a sample is
@@ -150,6 +157,15 @@ pub struct Records<'a> {
     pub end: Option<Time>,
 }
 
+/// What an observer has not got since it was told last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LostEvents {
+    /// Number of alerts that began, changed or were over.
+    pub alerts: u64,
+    /// Number of messages of topics that it wants.
+    pub messages: u64,
+}
+
 /// The observers of a run, each with its interest.
 #[derive(Default)]
 pub(crate) struct Observers {
@@ -221,6 +237,15 @@ impl Observers {
         for (observer, _) in observers.iter().filter_map(|number| self.all.get(*number as usize)) {
             if !sent.is_of_other || observer.hears_others() {
                 contained(|| observer.message(sent));
+            }
+        }
+    }
+
+    /// Tells each what it lacks.
+    pub(super) fn lost(&self, lost: &Lost) {
+        for (number, (observer, _)) in self.all.iter().enumerate() {
+            if let Some(lost) = lost.of(number) {
+                contained(|| observer.lost(lost));
             }
         }
     }

@@ -1,10 +1,10 @@
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use saoms_api::{Level, Time};
 
-use super::{FleetSample, Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
+use super::{FleetSample, Interest, LostEvents, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
 
 /// Maximum number of events that wait for the observers.
 const CAPACITY: usize = 65_536;
@@ -72,10 +72,13 @@ pub(crate) struct EventQueue {
 }
 
 /// What had no room.
-#[derive(Clone, Copy, Default)]
-struct Lost {
+#[derive(Default)]
+pub(super) struct Lost {
     events: u64,
     samples: u64,
+    /// The alerts among the events, and the messages by the numbers of the observers that want them.
+    alerts: u64,
+    messages: BTreeMap<u32, u64>,
 }
 
 #[derive(Default)]
@@ -105,13 +108,27 @@ impl Lost {
     fn note(&mut self, notification: &Notification) {
         match notification {
             Notification::Sample(_) => self.samples += 1,
-            _ => self.events += 1,
+            Notification::Event(event) => {
+                self.events += 1;
+                self.alerts += u64::from(matches!(event.what, Occurrence::Alert { .. }));
+            }
+            Notification::Sent(_, who) => {
+                self.events += 1;
+                who.iter().for_each(|number| *self.messages.entry(*number).or_default() += 1);
+            }
         }
     }
 
+    /// What an observer lacks of it, by its number; `None` if it lacks nothing that it may have to count.
+    pub(super) fn of(&self, number: usize) -> Option<LostEvents> {
+        let messages = u32::try_from(number).ok().and_then(|number| self.messages.get(&number).copied());
+        let lost = LostEvents { alerts: self.alerts, messages: messages.unwrap_or(0) };
+        (lost != LostEvents::default()).then_some(lost)
+    }
+
     /// What is told of it.
-    fn texts(self) -> impl Iterator<Item = String> {
-        let Lost { events, samples } = self;
+    fn texts(&self) -> impl Iterator<Item = String> + use<> {
+        let Lost { events, samples, .. } = *self;
         let events =
             (events > 0).then(|| format!("{events} events came faster than they could be shown, and were lost"));
         let samples = (samples > 0).then(|| {
@@ -191,6 +208,7 @@ impl EventQueue {
                 last = notification.time();
                 notification.deliver(observers);
             }
+            observers.lost(&lost);
             for text in lost.texts() {
                 let what = Occurrence::Note { level: Level::Warning, text };
                 observers.event(&RunEvent { time: last, component: None, what });

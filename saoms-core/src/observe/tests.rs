@@ -3,12 +3,12 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
-use saoms_api::host::Phase;
-use saoms_api::{Cause, Failure, Level, Time, record};
+use saoms_api::host::{Phase, SharedMessage};
+use saoms_api::{Cause, Failure, Header, Level, Time, record};
 
 use super::{
-    Beginning, EventQueue, FleetSample, Interest, JournalFile, Notification, Observer, Observers, Occurrence, Records,
-    RunEvent, RunProgress, SampleRate, deliver_records,
+    Beginning, EventQueue, FleetSample, Interest, JournalFile, LostEvents, Notification, Observer, Observers,
+    Occurrence, Records, RunEvent, RunProgress, SampleRate, SentMessage, deliver_records,
 };
 use crate::journal::{ComponentName, RecordQueue, Recorder, Stamp};
 use crate::status::{FleetPhase, FleetStatus};
@@ -18,6 +18,7 @@ use crate::status::{FleetPhase, FleetStatus};
 struct Listener {
     told: Mutex<Vec<String>>,
     progress: AtomicUsize,
+    lost: Mutex<Vec<LostEvents>>,
 }
 
 impl Observer for Listener {
@@ -31,6 +32,10 @@ impl Observer for Listener {
 
     fn progress(&self, _: &RunProgress) {
         self.progress.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn lost(&self, lost: LostEvents) {
+        self.lost.lock().unwrap().push(lost);
     }
 }
 
@@ -54,6 +59,37 @@ fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
     assert_eq!(told[65_535], "[0.000 s] A: 65535");
     assert_eq!(told[65_536], "[0.000 s] 4464 events came faster than they could be shown, and were lost");
     assert!(listener.progress.load(Ordering::Relaxed) > 0);
+}
+
+#[test]
+fn observers_hear_how_many_alerts_and_messages_they_lack() {
+    let all = [0, 1, 2].map(|_| Arc::new(Listener::default()));
+    let observers = Observers::new(all.iter().map(|one| Arc::clone(one) as Arc<dyn Observer>).collect());
+    let queue = EventQueue::new(observers.interest(), false);
+    for number in 0..65_536 {
+        queue.put(event(number));
+    }
+    let alert = |text: Option<&str>| RunEvent {
+        time: Time::START,
+        component: None,
+        what: Occurrence::Alert { kind: Arc::from("jam"), subject: Arc::from("left"), text: text.map(str::to_owned) },
+    };
+    queue.put(alert(Some("jams")));
+    queue.put(alert(None));
+    queue.put(event(1));
+    let sent = |who: &[u32]| {
+        let header = Header { sender: 0, sent: Time::START, cause: Cause::default() };
+        let message = SharedMessage::from_bytes(header, None, Vec::new());
+        let sent = SentMessage { topic: Arc::from("T"), component: Arc::from("A"), message, is_of_other: false };
+        Notification::Sent(sent, who.into())
+    };
+    queue.put(sent(&[1]));
+    queue.put(sent(&[0, 1]));
+    queue.close();
+    queue.deliver(&observers, RunProgress::default);
+    let lost = all.map(|one| one.lost.lock().unwrap().clone());
+    let of = |messages: u64| vec![LostEvents { alerts: 2, messages }];
+    assert_eq!(lost, [of(1), of(2), of(0)]);
 }
 
 #[test]

@@ -155,7 +155,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let RunFiles { report, picture, timeline, journal, history, log } = files_written;
     let alerts: Arc<AlertList> = Arc::default();
     let history = match history.map(|path| history::open(&path, arguments, &alerts)).transpose() {
-        Ok(history) => history,
+        Ok(history) => history.map(Arc::new),
         Err(exit) => return exit,
     };
     let mut delivery = match AlertDelivery::of(arguments, &assembly.run, &alerts) {
@@ -193,7 +193,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, style))];
     observers.extend(log.map(|log| Arc::new(log) as Arc<dyn Observer>));
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
-    observers.extend(history.map(|history| Arc::new(history) as Arc<dyn Observer>));
+    observers.extend(history.clone().map(|history| history as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     observers.extend(timeline.clone().map(|timeline| timeline as Arc<dyn Observer>));
@@ -220,6 +220,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let before = |handle: &Handle| {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
         numbers.outlive(handle);
+        history.iter().filter(|_| starting.is_some()).for_each(|history| history.outlive(handle));
         let applied = starting.map(|starting| LastApplied::outlive(handle, starting, &arguments.fleet.files));
         alerts.outlive(handle);
         watch.iter().filter(|_| handle.recalled().is_some()).for_each(|watch| watch.goes_on());

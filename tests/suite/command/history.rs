@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use crate::support::{answer, code, command, empty_folder, project, root, saoms, saoms_in, stderr, stdout, text};
 
 /// The cells of an answer, row by row.
-fn ask(folder: &Path, question: &str) -> Vec<Vec<String>> {
+pub(super) fn ask(folder: &Path, question: &str) -> Vec<Vec<String>> {
     let output = saoms_in(folder, &["query", question, "--history", "h.db", "--format", "json"]);
     assert_eq!(code(&output), 0, "{question}: {}", text(&output));
     let answer: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();

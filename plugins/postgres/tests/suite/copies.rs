@@ -19,7 +19,7 @@ fn the_history_of_an_airport_comes_over_row_for_row() {
     let count = |table: &str| -> i64 {
         history.query_row(&format!("SELECT count(*) FROM {table}"), [], |row| row.get(0)).unwrap()
     };
-    let rows = ["runs", "components", "records", "alerts", "reports", "history", "deliveries"];
+    let rows = ["runs", "components", "records", "alerts", "reports", "history", "deliveries", "requests"];
     let rows = rows.map(|table| format!("{table} {}", count(table))).join(", ");
     assert_eq!(told, format!("brought: {rows}\n"));
     let mut client = server.client("fleet");
