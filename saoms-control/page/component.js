@@ -71,17 +71,18 @@ export function component(name, { fleet, orders, open }) {
     none.hidden = records.length > 0;
     if (fleet.records.error) text(none, fleet.records.error);
     line.update(records, fleet.state.time_s);
-    keyed(list, records.slice(-LISTED).reverse(), (record) => record.id, recordItem, () => {});
+    keyed(list, records.slice(-LISTED).reverse(), (record) => record.id, (record) => recordItem(record, () => explain(record.time_s)), () => {});
   }
 
   return { element, update, every: 400, wants: { component: name } };
 }
 
-function recordItem(record) {
+/** A record in the list. Its button does what a click on its mark in the time line does, which no key reaches. */
+function recordItem(record, choose) {
   return h(
     "li",
     {},
-    h("time", { class: "figure" }, time(record.time_s, true)),
+    h("button", { class: "link", title: "Explain this moment", onclick: choose }, h("time", { class: "figure" }, time(record.time_s, true))),
     h("span", { class: `phase ${record.phase}` }, record.phase),
     h("span", { class: "loop" }, record.loop ?? ""),
     h("span", { class: "what" }, record.text),

@@ -34,7 +34,6 @@ export class FloorMap {
     this.offset = { x: 0, y: 0 };
     this.isFitted = true;
     this.frame = null;
-    this.frames = 0;
     this.pointers = new Map();
     this.sizes = new ResizeObserver(() => this.#resize());
     this.sizes.observe(this.canvas);
@@ -169,7 +168,6 @@ export class FloorMap {
       this.fitted = floor.area.width + floor.area.height;
       return this.fit();
     }
-    this.frames += 1;
     if (!this.theme) {
       const style = getComputedStyle(this.canvas);
       this.theme = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));

@@ -9,14 +9,14 @@ use crate::peers::browser::Browser;
 use crate::support::root;
 
 /// A fleet that is served to browsers.
-struct Shown {
-    running: Running,
-    url: String,
+pub(super) struct Shown {
+    pub(super) running: Running,
+    pub(super) url: String,
     /// The tokens: to control, and to view.
-    tokens: [String; 2],
+    pub(super) tokens: [String; 2],
 }
 
-fn shown(composite: &str, arguments: &[&str]) -> Shown {
+pub(super) fn shown(composite: &str, arguments: &[&str]) -> Shown {
     let running = Running::start(composite, &[&["--stay", "--serve", "127.0.0.1:0"], arguments].concat());
     let listed: Value = serde_json::from_str(&running.told(&["ps", "--format", "json"])).unwrap();
     let token = |name: &str| fs::read_to_string(listed[0][name].as_str().unwrap()).unwrap().trim().to_owned();
@@ -26,7 +26,7 @@ fn shown(composite: &str, arguments: &[&str]) -> Shown {
 
 impl Shown {
     /// Logs a browser in.
-    fn log_in(&self, browser: &mut Browser, token: &str) {
+    pub(super) fn log_in(&self, browser: &mut Browser, token: &str) {
         browser.open(&self.url);
         browser.fill("#token", token);
         browser.click("form button");
@@ -221,6 +221,17 @@ fn a_robot_is_steered_by_keyboard() {
     browser.press("Enter");
     browser.until("!document.querySelector('.side [data-order=Sleep]').hidden");
     assert_eq!(state(), "running");
+    // Why it acted, at a moment in the list of its records.
+    running.told(&["send", "luggage (3,1) to (6,8)"]);
+    running.until("World", |world| world["values"]["delivered"] == 1);
+    browser.open(&format!("{}/#/component/Robot1", shown.url));
+    browser.until("document.querySelectorAll('ol.records li').length > 10");
+    running.told(&["pause"]);
+    browser.tab_to("!!focus.closest('ol.records') && !!focus.nextElementSibling.classList.contains('effect')");
+    let at = browser.text(":focus time");
+    browser.press("Enter");
+    browser.until("document.querySelectorAll('.why ol.chain li').length > 0");
+    assert_eq!(browser.text(".why ol.chain li time"), at);
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
@@ -270,11 +281,32 @@ fn conflicts_and_zones_of_an_airport_are_shown() {
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
+/// A fleet whose names all have markup: its own, that of a site, of a zone, of a topic and of a robot.
+fn marked() -> String {
+    let at_site = |name: &str, class: &str, more: &str| {
+        component(name, class, more).replacen("<component ", "<component s:site=\"&lt;marquee&gt;North\" ", 1)
+    };
+    let world = "<reference name=\"world\" target=\"World\"/>";
+    let topic = "<property name=\"topicRename\">POSTOPIC,&lt;marquee&gt;places</property>";
+    let components = [
+        component("Master", "saoms.MasterEnvironment", ""),
+        component("&lt;img&gt;&lt;script&gt;7", "saoms.Robot", topic),
+        at_site("World", "saoms.World", ""),
+        at_site("&lt;marquee&gt;Zone", "saoms.Zone", world),
+        at_site("MasterNorth", "saoms.MasterEnvironment", ""),
+        at_site("Robot1", "saoms.Robot", world),
+    ];
+    let names = "xmlns:s=\"urn:saoms:1\" name=\"&lt;marquee&gt;hall\"";
+    composite(&components.concat()).replacen("name=\"fleet\"", names, 1)
+}
+
+/// True of a page in which no name has become an element; the picture of the assembly is the only image.
+const IS_TEXT: &str = "document.querySelectorAll('marquee, main :not(.picture) > img, body script').length === 0";
+
 #[test]
 fn names_and_lines_of_a_fleet_are_text() {
     let Some(mut browser) = Browser::start("dashboard-text") else { return };
-    let odd = component("&lt;img&gt;&lt;script&gt;7", "saoms.Robot", "");
-    let shown = shown(&composite(&[component("Master", "saoms.MasterEnvironment", ""), odd].concat()), &[]);
+    let shown = shown(&marked(), &[]);
     let Shown { running, tokens, url } = &shown;
     let (robot, operator) = ("<img><script>7", "<script>document.title='owned'</script>");
     shown.log_in(&mut browser, &tokens[0]);
@@ -282,21 +314,40 @@ fn names_and_lines_of_a_fleet_are_text() {
     browser.until(&format!("!!document.querySelector('tr[data-robot]') && {named} === {}", json!(robot)));
     // The name of the operator is in the log and in an alert.
     running.told(&["send", &format!("estop by {operator}")]);
-    for (part, place) in [("floor", "table.robots"), ("components", "table.components"), ("topics", "main")] {
+    let seen: [(&str, &str, &[&str]); 7] = [
+        ("floor", "main", &[robot, "<marquee>North"]),
+        ("components", "table.components", &[robot, "<marquee>Zone"]),
+        ("plots", ".plots", &["robots"]),
+        ("topics", "main", &["<marquee>places", "<marquee>North/"]),
+        ("log", "ol.log", &[robot, operator]),
+        ("alerts", "ol.alerts", &[robot, operator]),
+        ("component/%3Cmarquee%3EZone", "main", &["<marquee>Zone"]),
+    ];
+    for (part, place, texts) in seen {
         browser.open(&format!("{url}/#/{part}"));
-        browser.until(&format!("!!document.querySelector('{place}')"));
-        assert_eq!(browser.value("document.querySelectorAll('main img, body script').length"), 0, "{part}");
+        texts.iter().for_each(|text| browser.until(&says(place, text)));
+        assert_eq!(browser.value(IS_TEXT), true, "{part}");
     }
-    for (part, place) in [("log", "ol.log"), ("alerts", "ol.alerts")] {
-        browser.open(&format!("{url}/#/{part}"));
-        browser.until(&says(place, operator));
-        browser.until(&says(place, robot));
-        assert_eq!(browser.value("document.querySelectorAll('main img, body script').length"), 0, "{part}");
-    }
+    browser.open(&format!("{url}/#/topics"));
+    let topic = "[...document.querySelectorAll('main button')].find((one) => one.textContent.endsWith('places'))";
+    browser.until(&format!("!!{topic}"));
+    browser.value(&format!("{topic}.click()"));
+    browser.until(&says("main h3", "<marquee>places"));
+    assert_eq!(browser.value(IS_TEXT), true, "the messages of a topic");
+    browser.open(&format!("{url}/#/assembly"));
+    browser.until("document.querySelector('.picture img').naturalWidth > 100");
+    assert_eq!(browser.value(IS_TEXT), true);
+    // In the picture, too.
+    let picture = browser.value("fetch('/v1/picture.svg').then((answer) => answer.text())");
+    let picture = picture.as_str().unwrap();
+    assert!(picture.contains("&lt;marquee&gt;Zone") && picture.contains("&lt;marquee&gt;hall"), "{picture}");
+    assert!(!picture.contains("<marquee") && !picture.contains("<script"), "{picture}");
     browser.open(&format!("{url}/#/component/{}", "%3Cimg%3E%3Cscript%3E7"));
     browser.until(&says("main h2", robot));
     browser.until("document.querySelectorAll('ol.records li').length > 0");
-    assert_eq!(browser.value("document.querySelectorAll('main img, body script').length"), 0);
+    assert_eq!(browser.value(IS_TEXT), true);
     assert!(!browser.value("document.title").to_string().contains("owned"));
     assert_eq!(browser.errors(), Vec::<String>::new());
+    // What a test that fails keeps is a picture.
+    assert!(fs::read(browser.keep()).unwrap().starts_with(b"\x89PNG\r\n\x1a\n"));
 }

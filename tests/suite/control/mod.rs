@@ -4,6 +4,7 @@ mod alert_kinds;
 mod alerts;
 mod by_hand;
 mod changes;
+mod crowd;
 mod dashboard;
 mod delivery;
 mod emergency;

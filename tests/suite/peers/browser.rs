@@ -213,7 +213,7 @@ impl Browser {
     }
 
     /// Keeps the page as a picture.
-    fn keep(&mut self) -> PathBuf {
+    pub(crate) fn keep(&mut self) -> PathBuf {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screenshots");
         let file = folder.join(format!("{}.png", self.name));
         let picture = self.call("Page.captureScreenshot", json!({"format": "png"}));
