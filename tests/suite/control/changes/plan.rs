@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::{Running, fleet, other, write};
 use crate::support::{code, stderr, stdout, text};
@@ -34,6 +34,42 @@ fn a_plan_shows_what_would_change_and_changes_nothing() {
     assert!(json["diagnostics"].is_array() && json.get("applied").is_none() && json.get("text").is_none(), "{json}");
     running.told(&["down"]);
     assert_eq!(running.end().0, Some(0));
+}
+
+#[test]
+fn a_plan_shows_topics_that_come_and_go() {
+    let renamed = |to: &str| {
+        let gauge = |name: &str, more: &str| super::component(name, "bad.Actor", more);
+        let rename = format!("<property name=\"topicRename\">WORDS,{to}</property>");
+        super::composite(&[gauge("One", &rename), gauge("Two", &rename), gauge("Still", "")].concat())
+    };
+    let plugin = crate::boundary::build::library("bad");
+    let running = Running::start(&renamed("NEWS"), &["--stay", "--plugin", plugin.to_str().unwrap()]);
+    write(&running, &renamed("RUMOURS"));
+    let planned = running.ask(&["plan", "other.composite"]);
+    assert_eq!(code(&planned), 3, "{}", text(&planned));
+    let expected = "\
+~ One is replaced: loses its state
+    topicRename: WORDS,NEWS -> WORDS,RUMOURS
+~ Two is replaced: loses its state
+    topicRename: WORDS,NEWS -> WORDS,RUMOURS
++ topic RUMOURS
+- topic NEWS
+2 replaced
+";
+    assert_eq!(stdout(&planned), expected);
+    let json = running.ask(&["plan", "other.composite", "--format", "json"]);
+    let json: Value = serde_json::from_str(&stdout(&json)).unwrap();
+    let [added, removed] = ["topics_added", "topics_removed"].map(|key| json["plan"][key].clone());
+    assert_eq!((added, removed), (json!(["RUMOURS"]), json!(["NEWS"])), "{json}");
+    // One that another component still uses stays.
+    write(&running, &renamed("NEWS").replacen("WORDS,NEWS", "WORDS,RUMOURS", 1));
+    let planned = stdout(&running.ask(&["plan", "other.composite"]));
+    assert!(planned.contains("+ topic RUMOURS\n") && !planned.contains("- topic"), "{planned}");
+    running.told(&["apply", "other.composite", "--allow-loss"]);
+    assert_eq!(running.told(&["plan", "other.composite"]), "nothing to do\n");
+    running.told(&["down"]);
+    running.end();
 }
 
 #[test]
