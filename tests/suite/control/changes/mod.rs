@@ -1,5 +1,6 @@
 //! `saoms plan`, `saoms apply` and `saoms run --watch`.
 
+mod again;
 mod apply;
 mod borders;
 mod leaving;
