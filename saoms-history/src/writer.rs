@@ -66,7 +66,7 @@ pub(crate) fn open(path: &Path, tables: &[&'static HistoryTable]) -> Result<Conn
         transaction.execute(&own.statement(), []).map_err(of_database)?;
         // A file of an earlier version lacks some.
         let known = transaction.prepare(&format!("SELECT * FROM {} LIMIT 0", own.name)).map_err(of_database)?;
-        let known: Vec<String> = known.column_names().into_iter().map(str::to_owned).collect();
+        let known: Vec<String> = known.column_names().map(str::to_owned).collect();
         for OwnColumn(column, kind, _) in own.columns.iter().filter(|one| !known.iter().any(|known| known == one.0)) {
             let add = format!("ALTER TABLE {} ADD COLUMN {column} {kind}", own.name);
             transaction.execute(&add, []).map_err(of_database)?;

@@ -81,14 +81,14 @@ impl Losses<'_> {
         if number > Self::BATCHES {
             return self.queue.close();
         }
-        let bytes = vec![number as u8; if number % 5 == 0 { 10 } else { Self::SIZE }];
+        let bytes = vec![number as u8; if number.is_multiple_of(5) { 10 } else { Self::SIZE }];
         let kept = |key: u64, bytes: Option<Vec<u8>>| Change {
-            component: if key % 2 == 0 { "A".into() } else { "B/C".into() },
+            component: if key.is_multiple_of(2) { "A".into() } else { "B/C".into() },
             key,
             bytes: bytes.map(Into::into),
         };
         let mut changes = vec![kept(number % 7, Some(bytes)), kept(100, Some(number.to_le_bytes().to_vec()))];
-        if number % 11 == 0 {
+        if number.is_multiple_of(11) {
             changes.push(kept((number + 3) % 7, None));
         }
         state.given.push(changes.clone());

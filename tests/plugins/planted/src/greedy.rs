@@ -73,7 +73,7 @@ impl Greedy {
 
     /// Takes in what its zone says.
     fn hear(&mut self, context: &Context<'_>) {
-        if let Some(zone) = context.receive(&self.territories).last() {
+        if let Some(zone) = context.receive(&self.territories).next_back() {
             self.zone = zone.clone();
         }
         let held = self.held.get_or_insert_default();
