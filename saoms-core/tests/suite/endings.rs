@@ -34,6 +34,8 @@ fn a_run_does_not_end_before_the_last_event_of_who_has_no_work_left_is_read() {
         "[0.000 s] B: hears [again]
          Done after 0.03 s",
     );
+    // An event that nobody reads keeps no run from its end.
+    check("A actor period=10 publishes=TALK each=[0: open; 2: say last words; 2: done]", 1000, "Done after 0.02 s");
     // A state is no event: the newest one is kept, and nobody has to read it.
     check(
         "A actor period=10 publishes=TABLE each=[2: put 1 10; 2: done]

@@ -98,13 +98,15 @@ impl Engine {
         }
     }
 
-    /// True if the outbox has an event, and its component sees no work left from now on: the event has to be read
-    /// before the run ends.
+    /// True if the outbox has an event that somebody reads, and its component sees no work left from now on: the event
+    /// has to be read before the run ends.
     #[inline]
     fn says_last_words(&self, part: &Part) -> bool {
+        let slot = &self.slots[part.index as usize];
+        let is_read = |topic| slot.network != NO_NETWORK || self.bus.readers(topic).next().is_some();
         part.vote.is_some_and(|vote| vote.is_done())
-            && self.slots[part.index as usize].sees_work != Some(false)
-            && part.outbox.iter().any(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event)
+            && slot.sees_work != Some(false)
+            && part.outbox.iter().any(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event && is_read(*topic))
     }
 
     /// Sends a message to the readers of its topic.
