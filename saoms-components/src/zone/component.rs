@@ -259,7 +259,7 @@ impl Zone {
             if let Some(spoken) = newest(&mut self.spoke, request.robot, request.incarnation, header.sent)
                 && !ledger.has_ended(request.robot, request.incarnation)
             {
-                spoken.hear(request, header.sent);
+                spoken.hear(request, header.sent, ledger.territory());
                 let is_lost = request.standing == Standing::Lost;
                 note_lost(lost, request.robot, is_lost.then_some([request.block, request.end]));
             }
@@ -318,12 +318,12 @@ impl Zone {
         heard.extend(removals.filter_map(|(header, removal)| Some((header.sent, removal.fault()?))));
         heard.retain(|(_, fault)| fault.silences() && fault.robot != 0);
         for (sent, fault) in &heard {
-            let spoken = self.spoke.get(&fault.robot);
+            let spoken = self.spoke.get_mut(&fault.robot);
             if fault.is_failure() {
                 // One that has begun anew since said what it holds.
                 let is_over = |spoken: &Spoken| fault.since.is_none_or(|since| spoken.last > since);
                 let is_off = state.ledger.member(fault.robot).is_some_and(Member::is_over);
-                if !is_off && !spoken.is_some_and(is_over) {
+                if !is_off && !spoken.as_deref().is_some_and(is_over) {
                     let at = fault.block.filter(|_| spoken.is_some());
                     state.lost.extend(at.map(|at| (fault.robot, vec![at])));
                     state.ledger.stop(fault.robot, at);
@@ -332,11 +332,12 @@ impl Zone {
                 continue;
             }
             // A robot that began anew since then is back. Whether it did may be unknown when the event is said again.
-            let is_back = spoken.map(|spoken| spoken.first > fault.since.unwrap_or(*sent));
+            let is_back = spoken.as_ref().map(|spoken| spoken.first > fault.since.unwrap_or(*sent));
             if is_back.unwrap_or(fault.since.is_some()) {
                 continue;
             }
-            state.ledger.end(fault.robot, spoken.map_or(0, |spoken| spoken.incarnation));
+            state.ledger.end(fault.robot, spoken.as_ref().map_or(0, |spoken| spoken.incarnation));
+            spoken.into_iter().for_each(Spoken::forget_pace);
             state.lost.remove(&fault.robot);
             if let Some(asking) = &mut self.asking {
                 asking.note_gone(fault.robot);
