@@ -30,6 +30,8 @@ struct Standstill {
     granted: u64,
     /// Number of rounds since then.
     rounds: u32,
+    /// True if it is in a deadlock that was found: that lasts, also if moves are heard of later that take longer.
+    is_named: bool,
 }
 
 impl StandingStill {
@@ -48,7 +50,8 @@ impl StandingStill {
         let waits = |robot: &u32, member: &Member| ledger.territory().contains(member.end()) && !moving.contains(robot);
         let waiting = ledger.members().iter().filter(|(robot, member)| stands(robot).is_some() && waits(robot, member));
         for (robot, member) in waiting {
-            let still = self.robots.entry(*robot).or_insert(Standstill { granted: member.granted, rounds: 0 });
+            let begins = Standstill { granted: member.granted, rounds: 0, is_named: false };
+            let still = self.robots.entry(*robot).or_insert(begins);
             still.rounds = still.rounds.saturating_add(1);
         }
         let mut found: Vec<Deadlock> = Vec::new();
@@ -62,6 +65,9 @@ impl StandingStill {
                 found.push(deadlock);
             }
         }
+        for (robot, _) in found.iter().flat_map(|deadlock| &deadlock.robots) {
+            self.robots.entry(*robot).and_modify(|still| still.is_named = true);
+        }
         found
     }
 
@@ -71,7 +77,7 @@ impl StandingStill {
     }
 
     fn is_stuck(&self, robot: u32) -> bool {
-        self.robots.get(&robot).is_some_and(|still| still.rounds >= self.bound)
+        self.robots.get(&robot).is_some_and(|still| still.is_named || still.rounds >= self.bound)
     }
 
     /// The deadlock that a robot is in, or waits for; `None` if a robot in its way can still go on, is in a maneuver,

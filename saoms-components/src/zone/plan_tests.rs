@@ -167,6 +167,27 @@ fn all_robots_of_a_deadlock_are_named() {
 }
 
 #[test]
+fn a_deadlock_that_was_named_lasts_although_longer_moves_are_heard_of_later() {
+    let mut site = Site::new("...", 3);
+    site.hold(1, &[at(0, 0)], at(2, 0), 99);
+    site.hold(2, &[at(1, 0)], at(0, 0), 98);
+    let mut standing_still = StandingStill::default();
+    let mut named = |site: &mut Site, rounds: u32, longest_move: u32| -> Vec<bool> {
+        let mut count = || {
+            site.round();
+            [1, 2].into_iter().for_each(|robot| site.arrive(robot));
+            !standing_still.count(&site.ledger, &mut site.ground, &BTreeSet::new(), || longest_move).is_empty()
+        };
+        (0..rounds).map(|_| count()).collect()
+    };
+    assert_eq!(named(&mut site, 60, 10), [false; 60], "a move may end yet");
+    assert_eq!(named(&mut site, 1, 0), [true]);
+    assert_eq!(named(&mut site, 20, 10), [true; 20]);
+    site.ledger.end(1, 1);
+    assert_eq!(named(&mut site, 2, 0), [false; 2], "the other one goes on");
+}
+
+#[test]
 fn robots_that_wait_for_their_moves_in_a_maneuver_are_in_no_deadlock() {
     for moving in [[2].as_slice(), &[3], &[1, 2, 3]] {
         assert!(!is_deadlock_behind(0, moving), "{moving:?}");
