@@ -41,11 +41,30 @@ pub struct Shift {
 struct Roster {
     /// Time of the next shift, if there is another one.
     next: Time,
-    /// True from the first execution on.
+    /// True from the first execution on, as long as there are shifts left.
     is_on_duty: bool,
     /// End of the present shift.
     ends: Option<Time>,
     begun: u32,
+}
+
+impl Roster {
+    /// True if a shift begins in an execution at this time, of this number of shifts.
+    fn is_due(&mut self, now: Time, shifts: Option<u32>) -> bool {
+        let is_left = shifts.is_none_or(|shifts| self.begun < shifts);
+        // Neither shifts that begin late nor those that are added later make up for the time before.
+        if !std::mem::replace(&mut self.is_on_duty, is_left) && is_left {
+            self.next = self.next.max(now);
+        }
+        is_left && self.next <= now
+    }
+
+    /// Begins a shift.
+    fn begin(&mut self, now: Time, work: Duration, pause: Duration) {
+        self.begun = self.begun.saturating_add(1);
+        self.ends = Some(now + work);
+        self.next = self.next + work + pause;
+    }
 }
 
 impl Component for Shift {
@@ -58,12 +77,9 @@ impl Component for Shift {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let (roster, now) = (&mut self.roster, context.now());
-        if !std::mem::replace(&mut roster.is_on_duty, true) {
-            roster.next = roster.next.max(now);
-        }
         let ShiftProperties { work, pause, shifts, .. } = self.properties;
         let is_over = roster.ends.take_if(|end| *end <= now).is_some();
-        let is_due = roster.next <= now && shifts.is_none_or(|shifts| roster.begun < shifts);
+        let is_due = roster.is_due(now, shifts);
         // Another shift without a pause goes on with the same components.
         if is_over && !is_due {
             info!(context, "shift {} is over for {}", self.roster.begun, self.names());
@@ -75,10 +91,7 @@ impl Component for Shift {
         for task in &self.tasks {
             task.schedule_for(context, milliseconds)?;
         }
-        let roster = &mut self.roster;
-        roster.begun = roster.begun.saturating_add(1);
-        roster.ends = Some(now + work);
-        roster.next = roster.next + work + pause;
+        self.roster.begin(now, work, pause);
         info!(context, "starts shift {} of {} s for {}", self.roster.begun, work.as_secs_f64(), self.names());
         Ok(())
     }
@@ -101,5 +114,43 @@ impl Shift {
             1 => "1 component".to_owned(),
             count => format!("{count} components"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The seconds in which shifts of 2 s begin, with pauses of 3 s: those from the first one to the second one, of so
+    /// many shifts.
+    fn begins(roster: &mut Roster, seconds: std::ops::Range<u64>, shifts: Option<u32>) -> Vec<u64> {
+        let mut begins = |second: &u64| {
+            let now = Time::START + Duration::from_secs(*second);
+            let is_due = roster.is_due(now, shifts);
+            if is_due {
+                roster.begin(now, Duration::from_secs(2), Duration::from_secs(3));
+            }
+            is_due
+        };
+        seconds.filter(|second| begins(second)).collect()
+    }
+
+    #[test]
+    fn shifts_that_are_added_to_finished_ones_follow_each_other_from_then_on() {
+        let mut roster = Roster::default();
+        assert_eq!(begins(&mut roster, 0..100, Some(2)), [0, 5]);
+        assert_eq!(begins(&mut roster, 100..120, Some(4)), [100, 105]);
+        assert_eq!(begins(&mut roster, 120..200, Some(3)), [0; 0]);
+        assert_eq!(begins(&mut roster, 200..212, None), [200, 205, 210]);
+        // One that is added in time begins in time.
+        assert_eq!(begins(&mut roster, 212..214, Some(7)), [0; 0]);
+        assert_eq!(begins(&mut roster, 214..222, Some(9)), [215, 220]);
+    }
+
+    #[test]
+    fn shifts_that_begin_late_keep_to_their_times() {
+        let mut roster = Roster::default();
+        assert_eq!(begins(&mut roster, 3..4, None), [3]);
+        assert_eq!(begins(&mut roster, 10..20, None), [10, 13, 18]);
     }
 }
