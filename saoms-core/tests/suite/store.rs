@@ -224,6 +224,31 @@ fn a_failure_in_virtual_time_loses_what_was_not_committed_with_its_messages() {
     );
 }
 
+/// In the change it got what A had kept, and made something of it that was committed before it failed.
+#[test]
+fn what_was_left_to_one_that_loses_its_last_execution_is_left_to_no_other_one() {
+    let settings = Settings { commit_delay: Duration::from_millis(15), ..simulated(100) };
+    let (running, diary) = start("A ledger period=10\nX actor period=10", settings, None);
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Actor>()).unwrap();
+    registry.add(Registration::of::<Ledger>()).unwrap();
+    let change = |at: u64, fleet: &str| {
+        running.run_until(Time::from_nanos(at * 1_000_000));
+        running.handle().apply(&assembly_of(fleet, &registry), ChangeOptions::allowing_loss()).unwrap();
+    };
+    change(25, "E ledger period=10 fails=[ 55 ] restart=20/3\nX actor period=10");
+    change(57, "E ledger period=20 fails=[ 55 ] restart=20/3\nF ledger period=10\nX actor period=10");
+    running.run_to_end();
+    let lines = diary.lines();
+    let told = lines.lines().filter_map(|line| Some(line.split_once("] ")?.1));
+    let told = told.filter(|line| line.starts_with("F: begins") || line.contains("failed"));
+    let expected = [
+        "E: failed and is restarted in 20ms: it was told to (messages that waited for what it kept, and are not sent: 1)",
+        "F: begins with 0, others kept [2]",
+    ];
+    assert_eq!(told.collect::<Vec<_>>(), expected, "{lines}");
+}
+
 #[test]
 fn a_run_ends_after_the_last_commit() {
     check(

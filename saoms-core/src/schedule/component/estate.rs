@@ -56,9 +56,9 @@ impl Estate {
         Estate { direct: bequests.len(), bequests, is_taken: false }
     }
 
-    /// Notes whether who got it has kept something since.
-    pub(crate) fn set_taken(&mut self, is_taken: bool) {
-        self.is_taken = is_taken;
+    /// Notes whether who got it has kept something since. Gives whether it had before.
+    pub(crate) fn set_taken(&mut self, is_taken: bool) -> bool {
+        std::mem::replace(&mut self.is_taken, is_taken)
     }
 
     /// What is left to a component: that of others of its class and site. What it kept itself before an earlier change

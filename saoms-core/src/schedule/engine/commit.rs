@@ -30,6 +30,8 @@ pub(crate) struct Uncommitted {
     pub(crate) number: u64,
     /// Changes that take it back.
     before: Vec<StoredChange>,
+    /// True if it took what was left to the component: it kept something for the first time since.
+    takes_estate: bool,
     /// Messages of that execution, and of later ones that kept nothing.
     pub(super) messages: Vec<(TopicId, SharedMessage)>,
     /// Number of bytes of them, roughly.
@@ -80,9 +82,7 @@ impl Engine {
             |(key, bytes): &StoredChange| Change { component: Arc::clone(name), key: *key, bytes: bytes.clone() };
         let changes: Vec<Change> = to_keep.iter().map(change).chain(events).collect();
         let before: Vec<StoredChange> = to_keep.drain(..).map(|change| stored.change(change)).collect();
-        if !before.is_empty() {
-            estate.set_taken(true);
-        }
+        let takes_estate = !before.is_empty() && !estate.set_taken(true);
         if self.memory.is_over(self.phase) {
             return;
         }
@@ -106,6 +106,7 @@ impl Engine {
         let uncommitted = Uncommitted {
             number,
             before,
+            takes_estate,
             messages: Vec::new(),
             bytes: 0,
             most: MANY,
@@ -195,10 +196,11 @@ impl Engine {
         }
         let mut messages = 0;
         self.uncommitted -= slot.uncommitted.len();
-        for Uncommitted { before, messages: unsent, bytes, .. } in slot.uncommitted.drain(..).rev() {
+        for Uncommitted { before, takes_estate, messages: unsent, bytes, .. } in slot.uncommitted.drain(..).rev() {
             self.memory.note_held_back(bytes, 0);
             messages += unsent.len();
-            if !before.is_empty() {
+            // What it kept before, and what is committed, took it for good.
+            if takes_estate {
                 part.estate.set_taken(false);
             }
             before.into_iter().rev().for_each(|change| drop(part.stored.change(change)));
