@@ -11,8 +11,9 @@ use super::outgoing::Outgoing;
 use super::peer::{Peer, Reading};
 
 impl Exchange {
-    /// Forgets events that all readers have received.
+    /// Forgets events that all readers have received. Where none is left, they learn of those that found no room.
     pub(super) fn forget_received(&mut self) {
+        let mut has_numbered = false;
         for (topic, outgoing) in &mut self.outgoing {
             let needed = self.peers.values().filter_map(|peer| peer.needs(topic)).min();
             if let Some(cells) = &mut outgoing.cells {
@@ -22,6 +23,11 @@ impl Exchange {
                 cells.forget(needed.saturating_sub(1));
             }
             outgoing.forget_before(needed.unwrap_or(outgoing.last + 1));
+            // A number behind kept events would be asked for, and a sign of life overtakes those that are on their way.
+            has_numbered |= outgoing.size == 0 && outgoing.number_owed();
+        }
+        if has_numbered {
+            self.say_soon();
         }
     }
 

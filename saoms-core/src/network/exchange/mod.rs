@@ -214,10 +214,14 @@ impl Exchange {
     }
 
     /// So many events of a topic found no room on their way here, which was told, after all that were sent before:
-    /// their readers learn it. The last one has this number in the state folder.
+    /// their readers learn it. The last one has this number in the state folder. Without a number they learn it once
+    /// they have received what was sent before: it is on its way, or may have to be sent again.
     pub fn skip(&mut self, topic: &Arc<str>, count: u64, last: Option<u64>) {
         let outgoing = self.outgoing.entry(Arc::clone(topic)).or_insert_with(|| Outgoing::new(false));
-        let last = last.unwrap_or(outgoing.last.saturating_add(count));
+        let Some(last) = last else {
+            outgoing.owed = outgoing.owed.saturating_add(count);
+            return self.forget_received();
+        };
         if last > outgoing.last {
             let count = outgoing.skip_before(last + 1);
             *self.overflow.entry(Arc::clone(topic)).or_default() += count;

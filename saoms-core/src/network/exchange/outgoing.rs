@@ -68,6 +68,8 @@ pub(super) struct Outgoing {
     pub(super) before: u64,
     /// The number of the first event that may be in the state folder.
     pub(super) stored: u64,
+    /// Events that found no room on their way here, without numbers yet: readers hear of them once nothing is kept.
+    pub(super) owed: u64,
 }
 
 impl Outgoing {
@@ -76,7 +78,7 @@ impl Outgoing {
             true => Kept::States { newest: BTreeMap::new(), numbers: HashMap::new() },
             false => Kept::Events(VecDeque::new()),
         };
-        Outgoing { last: 0, kept, size: 0, cells: None, before: 0, stored: 1 }
+        Outgoing { last: 0, kept, size: 0, cells: None, before: 0, stored: 1, owed: 0 }
     }
 
     pub(super) fn is_state(&self) -> bool {
@@ -142,6 +144,13 @@ impl Outgoing {
         let count = self.forget_before(number);
         self.last = self.last.max(number - 1);
         count
+    }
+
+    /// Gives numbers to events that found no room, after all others. True if there are some: readers have to learn it.
+    pub(super) fn number_owed(&mut self) -> bool {
+        let owed = std::mem::take(&mut self.owed);
+        self.last = self.last.saturating_add(owed);
+        owed > 0
     }
 
     /// The size of the kept events from a number up to before another one, in bytes, as far as they are of the same

@@ -137,6 +137,58 @@ fn readers_learn_of_events_that_found_no_room_on_their_way_to_the_network() {
 }
 
 #[test]
+fn events_without_room_cost_none_of_those_that_are_on_their_way() {
+    for leaves in [false, true] {
+        let mut network = Lossy::new(2, Weather::calm(), 1);
+        network.run(500 * MILLISECOND);
+        network.send(0, "EVENTS");
+        network.run(500 * MILLISECOND);
+        // Nothing of this arrives at once, and the next signs of life do.
+        network.is_cut = true;
+        (0..3).for_each(|_| network.send(0, "EVENTS"));
+        network.is_cut = false;
+        network.programs[0].exchange.skip(&Arc::from("EVENTS"), 5, None);
+        assert!(!network.programs[0].exchange.is_complete());
+        network.send(0, "EVENTS");
+        network.programs[0].exchange.skip(&Arc::from("EVENTS"), 2, None);
+        network.run(2_000 * MILLISECOND);
+        if leaves {
+            network.programs[0].exchange.skip(&Arc::from("EVENTS"), 1, None);
+            network.leave(0);
+            network.run(500 * MILLISECOND);
+        } else {
+            network.send(0, "EVENTS");
+            network.run(2_000 * MILLISECOND);
+            assert!(network.programs[0].exchange.is_complete());
+        }
+        let received = if leaves { 5 } else { 6 };
+        assert_eq!(events(&network, "EVENTS")[&(0, 1)].len(), received);
+        let told = |program: usize, what: &str| -> u64 {
+            let told = network.told(program);
+            told.iter().filter_map(|line| line.strip_prefix(what)?.parse::<u64>().ok()).sum()
+        };
+        assert_eq!(told(1, "Lost 0 EVENTS "), if leaves { 8 } else { 7 }, "{:?}", network.told(1));
+        // The sender has counted them where they found no room.
+        assert_eq!((told(0, "Overflow EVENTS "), network.programs[0].lost), (0, 0), "{:?}", network.told(0));
+    }
+}
+
+#[test]
+fn who_leaves_before_all_is_received_says_how_many_events_found_no_room() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    network.is_cut = true;
+    (0..3).for_each(|_| network.send(0, "EVENTS"));
+    network.is_cut = false;
+    network.programs[0].exchange.skip(&Arc::from("EVENTS"), 5, None);
+    network.leave(0);
+    network.programs[0].is_stopped = true;
+    network.run(500 * MILLISECOND);
+    assert!(network.told(0).contains(&"Unreceived 1 EVENTS 3".to_owned()), "{:?}", network.told(0));
+    assert!(network.told(1).contains(&"Lost 0 EVENTS 8".to_owned()), "{:?}", network.told(1));
+}
+
+#[test]
 fn a_component_that_begins_anew_in_another_program_is_heard_at_once() {
     let mut network = Lossy::new(2, Weather::calm(), 1);
     network.run(500 * MILLISECOND);
