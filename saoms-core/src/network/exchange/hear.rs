@@ -43,13 +43,15 @@ impl Exchange {
         let Some(peer) = self.peers.get_mut(&program).filter(|peer| alive.number > peer.sign) else { return };
         peer.vote = Vote::of(alive.vote);
         peer.signs = peer.signs.saturating_add(1);
-        let (signs, is_over) = (peer.signs, peer.is_over);
+        let signs = peer.signs;
         (peer.sign, peer.heard, peer.patience) = (alive.number, now, alive.patience.saturating_mul(MILLISECOND));
         if !std::mem::replace(&mut peer.is_reachable, true) {
             self.calls_at = 0;
             let name = Arc::clone(&peer.name);
             self.actions.push(Action::Tell(News::Back { program, name }));
+            self.settle_owners(&[program]);
         }
+        let is_over = self.peers.get(&program).is_some_and(|peer| peer.is_over);
         // What is said once may be lost, so that it is said ever more rarely; and one that was stopped for long does
         // not know yet that its components run here.
         if signs.is_power_of_two() || is_over && self.is_of_own(program) {
@@ -237,6 +239,7 @@ impl Exchange {
             }
             self.remember_past(program, &mut peer);
             self.actions.push(Action::Tell(News::Left { program, name: peer.name }));
+            self.settle_owners(&[program]);
             self.forget_received();
         }
     }

@@ -369,9 +369,11 @@ impl Exchange {
 
     /// Programs that give no sign of life are missed.
     fn miss(&mut self, now: u64) {
+        let mut missed = Vec::new();
         for (program, peer) in &mut self.peers {
             if peer.is_reachable && now.saturating_sub(peer.heard) > peer.patience {
                 peer.is_reachable = false;
+                missed.push(*program);
                 // Calls may be for another one of its name.
                 self.calls_at = 0;
                 let of_program = self.owners.iter().filter(|(_, owner)| owner.program == *program);
@@ -381,6 +383,9 @@ impl Exchange {
                 let news = News::Unreachable { program: *program, name: Arc::clone(&peer.name), components };
                 self.actions.push(Action::Tell(news));
             }
+        }
+        if !missed.is_empty() {
+            self.settle_owners(&missed);
         }
     }
 

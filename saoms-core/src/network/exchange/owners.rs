@@ -4,6 +4,8 @@
 //! all others before, and heard nothing of the earlier one. So who did not answer then, as a program that was stopped,
 //! is known as the earlier one by all, whomever they heard first, and ends when it hears of the later one.
 //!
+//! A program that is not there any more displaces none that is, whatever its date: it was killed, or has left.
+//!
 //! Dates of machines are compared that may differ. A program asks for half a second before it begins, and of two that
 //! ask at once, one waits: clocks that agree within half a second are right. Where they do not, a date is still greater
 //! than those of all programs with the same components of which anybody knew that answered (`latest` of [`Begins`]).
@@ -123,7 +125,8 @@ impl Exchange {
     }
 
     /// A program has begun: those that began before it with components of it are over, or it would not have, and
-    /// nothing is kept for them. It may itself be one of these: one that was stopped, and returns.
+    /// nothing is kept for them. It may itself be one of these: one that was stopped, and returns. Only who is there
+    /// displaces others.
     pub(super) fn replace(&mut self, program: u64) {
         let start = self.start_of(program);
         let Some(begun) = self.begun_with.get(&program) else { return };
@@ -131,14 +134,13 @@ impl Exchange {
         if let Some(component) = own.cloned().filter(|_| start > self.own_start()) {
             self.tell_superseded(&component, program);
         }
-        let Some(begun) = self.begun_with.get(&program) else { return };
-        let shares = |other: &u64| {
-            let others = self.begun_with.get(other).filter(|_| *other != program);
-            others.is_some_and(|others| !others.components.is_disjoint(&begun.components))
-        };
-        let both = self.peers.keys().filter(|other| shares(other));
-        let mut over: BTreeSet<u64> =
-            both.map(|other| if self.start_of(*other) < start { *other } else { program }).collect();
+        let is_there = self.is_there(program);
+        let both = self.peers.iter().filter(|(other, _)| **other != program && self.shares(program, **other));
+        let over = both.filter_map(|(other, peer)| match self.start_of(*other) < start {
+            true => is_there.then_some(*other),
+            false => peer.is_reachable.then_some(program),
+        });
+        let mut over: BTreeSet<u64> = over.collect();
         if self.is_of_own(program) && start < self.own_start() {
             over.insert(program);
         }
@@ -151,6 +153,47 @@ impl Exchange {
             self.calls_at = 0;
         }
         self.forget_received();
+    }
+
+    /// These programs are not there any more, or one is there again: others may have their components, or not any more.
+    pub(super) fn settle_owners(&mut self, programs: &[u64]) {
+        let peers = &self.peers;
+        let is_there = |program: &u64| peers.get(program).is_some_and(|peer| peer.is_reachable);
+        for owner in self.owners.values_mut().filter(|owner| !is_there(&owner.program)) {
+            owner.earlier.retain(|earlier| !is_there(earlier));
+        }
+        let is_concerned =
+            |program: &u64| programs.iter().any(|other| other == program || self.shares(*program, *other));
+        let there = self.peers.iter().filter(|(_, peer)| peer.is_reachable).map(|(program, _)| *program);
+        let concerned: Vec<u64> = there.filter(is_concerned).collect();
+        for program in &concerned {
+            if !self.is_displaced(*program)
+                && let Some(peer) = self.peers.get_mut(program)
+                && std::mem::take(&mut peer.is_over)
+            {
+                // Calls may be for it.
+                self.calls_at = 0;
+            }
+        }
+        concerned.into_iter().for_each(|program| self.replace(program));
+    }
+
+    fn is_there(&self, program: u64) -> bool {
+        self.peers.get(&program).is_some_and(|peer| peer.is_reachable)
+    }
+
+    /// True if both programs have begun with a component.
+    fn shares(&self, program: u64, other: u64) -> bool {
+        let both = self.begun_with.get(&program).zip(self.begun_with.get(&other));
+        both.is_some_and(|(one, other)| !one.components.is_disjoint(&other.components))
+    }
+
+    /// True if a program that is there has begun with a component of this one later.
+    fn is_displaced(&self, program: u64) -> bool {
+        let start = self.start_of(program);
+        let is_later = |other: u64| self.start_of(other) > start && self.shares(program, other);
+        self.is_of_own(program) && start < self.own_start()
+            || self.peers.iter().any(|(other, peer)| peer.is_reachable && is_later(*other))
     }
 
     /// True if the messages of a component count that come from this program: of those that run it, the one that began
@@ -204,11 +247,12 @@ impl Exchange {
         counts
     }
 
-    /// True if a program that was heard has begun with a component later than this one.
+    /// True if a program that is there has begun with a component later than this one.
     fn has_begun_later(&self, program: u64, component: &str) -> bool {
         let start = self.start_of(program);
         let has_begun = |other: u64| self.begun_with.get(&other).is_some_and(|one| one.components.contains(component));
-        self.peers.keys().any(|other| *other != program && self.start_of(*other) > start && has_begun(*other))
+        let mut there = self.peers.iter().filter(|(_, peer)| peer.is_reachable).map(|(other, _)| *other);
+        there.any(|other| other != program && self.start_of(other) > start && has_begun(other))
     }
 
     /// A program is there: components of it that have begun anew elsewhere, some time ago, run twice.

@@ -135,6 +135,11 @@ impl Lossy {
         self.add(name, component, schema, None);
     }
 
+    /// Another program joins, on a machine whose clock says this.
+    pub(in crate::network::exchange) fn join_at(&mut self, name: &str, component: &str, began: u64) {
+        self.add_at(name, component, 0, None, began);
+    }
+
     /// Another program joins, with a state folder.
     pub(in crate::network::exchange) fn join_with_folder(&mut self) {
         let number = self.programs.len();
@@ -158,6 +163,10 @@ impl Lossy {
     }
 
     fn add(&mut self, name: &str, component: &str, schema: u64, folder: Option<Memory>) {
+        self.add_at(name, component, schema, folder, self.programs.len() as u64);
+    }
+
+    fn add_at(&mut self, name: &str, component: &str, schema: u64, folder: Option<Memory>, began: u64) {
         let number = self.programs.len();
         let folder = folder.map(|folder| match folder.start {
             0 => Memory { origin: number as u64, start: 1, ..folder },
@@ -165,7 +174,7 @@ impl Lossy {
         });
         let mut exchange = Exchange::new(Settings {
             program: number as u64,
-            began: number as u64,
+            began,
             name: name.to_owned(),
             patience: 1_000 * MILLISECOND,
             limit: 256 << 10,

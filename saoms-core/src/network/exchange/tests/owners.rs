@@ -110,6 +110,65 @@ fn the_link_is_not_lost_because_a_program_is_away_whose_components_run_elsewhere
     assert!(told(&network, 1, "Left").len() == 1 && !network.programs[1].exchange.hears_nobody());
 }
 
+/// A reader and a program whose clock is ahead; that ends while the reader is cut off, and one begins anew with its
+/// component.
+fn ahead(leaves: bool) -> (Lossy, usize, usize, usize) {
+    let (reader, first, second) = (0, 1, 2);
+    let mut network = Lossy::new(1, Weather::calm(), 1);
+    network.join_at("P", "Robot", 1_000);
+    network.run(SECOND);
+    network.send(first, "EVENTS");
+    network.run(SECOND);
+    network.is_cut = true;
+    if !leaves {
+        network.programs[first].is_stopped = true;
+    }
+    network.run(200 * MILLISECOND);
+    network.join_at("P", "Robot", 10);
+    network.is_cut = false;
+    network.run(300 * MILLISECOND);
+    (network, reader, first, second)
+}
+
+#[test]
+fn a_program_that_is_missed_does_not_block_the_living_one_although_its_clock_was_ahead() {
+    let (mut network, reader, first, second) = ahead(false);
+    assert_eq!(told(&network, reader, "Unreachable"), Vec::<String>::new());
+    // It is heard, and ignored.
+    network.send(second, "EVENTS");
+    network.run(3 * SECOND);
+    assert_eq!(told(&network, reader, "Unreachable"), ["Unreachable 1"]);
+    (0..3).for_each(|_| network.send(second, "EVENTS"));
+    network.send(reader, "EVENTS");
+    network.run(SECOND);
+    let heard = events(&network, "EVENTS");
+    assert_eq!(heard[&(second, reader)], [2, 3, 4]);
+    assert_eq!(heard[&(reader, second)], [1], "what is kept for it goes on");
+    assert_eq!(told(&network, reader, "Anew"), ["Anew Robot 2 1"]);
+    // If it was stopped alone after all, it goes on, and the other one learns it.
+    network.programs[first].is_stopped = false;
+    network.run(2 * SECOND);
+    network.send(first, "EVENTS");
+    network.run(SECOND);
+    assert_eq!(events(&network, "EVENTS")[&(first, reader)], [1, 2]);
+    assert_eq!(told(&network, second, "Superseded"), ["Superseded Robot P"]);
+}
+
+#[test]
+fn a_program_that_leaves_does_not_block_the_living_one_although_its_clock_was_ahead() {
+    let (mut network, reader, first, second) = ahead(true);
+    network.send(second, "EVENTS");
+    network.run(SECOND);
+    network.leave(first);
+    network.programs[first].is_stopped = true;
+    network.run(SECOND);
+    network.send(second, "EVENTS");
+    network.send(reader, "EVENTS");
+    network.run(SECOND);
+    let heard = events(&network, "EVENTS");
+    assert_eq!((&heard[&(second, reader)], &heard[&(reader, second)]), (&vec![2], &vec![1]));
+}
+
 #[test]
 fn who_asks_hears_when_the_last_program_began_with_one_of_its_components() {
     let mut own = Exchange::new(Settings {
