@@ -215,9 +215,10 @@ impl Networks {
                 memory,
             };
             let tell = |text: String| handle.note(Level::Warning, text);
-            match enter(&session, &port, &mut member, is_fresh, tell, || signals.has_come()) {
+            match enter(&session, &port, &mut member, is_fresh, tell, wait.shortest(), || signals.has_come()) {
                 Ok(Entry::Free) => {}
                 Ok(Entry::Over) => break,
+                Ok(Entry::Lost) => return Err(who.gone(&wait)),
                 Err(why) => {
                     let error = in_node(&why, self.node.as_deref());
                     return Err(StartError::Network { url: settings.url.clone(), error });
@@ -238,6 +239,13 @@ struct Wait<'a> {
     limit: Option<Duration>,
     /// True once the end was asked for.
     is_over: &'a dyn Fn() -> bool,
+}
+
+impl Wait<'_> {
+    /// The shorter of both times.
+    fn shortest(&self) -> Option<Duration> {
+        self.longest.into_iter().chain(self.limit).min()
+    }
 }
 
 /// Who joins a network.
@@ -267,6 +275,29 @@ impl Who<'_> {
         StartError::Network { url: self.settings.url.clone(), error }
     }
 
+    /// The time of `--connect-timeout` has passed.
+    fn not_in_time(&self, longest: Duration, why: &str) -> StartError {
+        let within = match longest {
+            Duration::ZERO => String::new(),
+            longest => format!(" within the {} of `--connect-timeout`", format_duration(longest)),
+        };
+        self.error(&format!("no message broker was there{within}: {why}: {TO_DO}"))
+    }
+
+    /// The time of `--for` has passed.
+    fn not_in_run(&self, limit: Duration) -> StartError {
+        let limit = format_duration(limit);
+        self.error(&format!("no message broker was there within the {limit} of `--for`: {TO_DO}"))
+    }
+
+    /// The link was lost before the components began, and the shorter of both times has passed since.
+    fn gone(&self, wait: &Wait<'_>) -> StartError {
+        match (wait.longest, wait.limit) {
+            (longest, Some(limit)) if longest.is_none_or(|longest| limit < longest) => self.not_in_run(limit),
+            (longest, _) => self.not_in_time(longest.unwrap_or_default(), "the link to it was lost"),
+        }
+    }
+
     /// A session of the network, and whether it was waited for; `None` if the end was asked for before it was there.
     fn opened(
         &self,
@@ -292,11 +323,7 @@ impl Who<'_> {
             };
             let over = |longest: Option<Duration>| longest.filter(|longest| since.elapsed() >= *longest);
             if let Some(longest) = over(wait.longest) {
-                let within = match longest {
-                    Duration::ZERO => String::new(),
-                    longest => format!(" within the {} of `--connect-timeout`", format_duration(longest)),
-                };
-                return Err(self.error(&format!("no message broker was there{within}: {why}: {TO_DO}")));
+                return Err(self.not_in_time(longest, &why));
             }
             if !told.contains(&why) && told.len() < MOST_REASONS {
                 let needs =
@@ -310,9 +337,7 @@ impl Who<'_> {
             }
             sleep(PAUSE);
             if let Some(limit) = over(wait.limit) {
-                let limit = format_duration(limit);
-                let error = format!("no message broker was there within the {limit} of `--for`: {TO_DO}");
-                return Err(self.error(&error));
+                return Err(self.not_in_run(limit));
             }
         }
     }

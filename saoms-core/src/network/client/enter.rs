@@ -11,7 +11,7 @@ use super::{BEGINS, RUNS};
 use crate::network::exchange::Settings;
 use crate::network::exchange::wire::{Begins, LARGEST_NUMBER};
 use crate::network::key;
-use crate::network::port::Port;
+use crate::network::port::{LinkState, Port};
 use crate::network::transport::TransportSession;
 
 /// Time in which others say that a component runs there: as long as a message and its answer take on a slow line.
@@ -37,6 +37,8 @@ pub enum Entry {
     Free,
     /// The end was asked for before that was known.
     Over,
+    /// The link to the network was lost meanwhile, and was not there again for longer than it is waited for.
+    Lost,
 }
 
 /// A program in which a component runs that is about to begin here.
@@ -57,12 +59,15 @@ struct Running {
 ///
 /// `is_fresh`: the network was not there a moment ago, or has no router, so that others may not be connected yet. That
 /// is so for a router in any case, and the router says it to others while it has just begun.
+///
+/// `longest`: how long a link that is lost is waited for; `None` is for ever.
 pub fn enter(
     session: &TransportSession,
     port: &Arc<Port>,
     settings: &mut Settings,
     is_fresh: bool,
     mut tell: impl FnMut(String),
+    longest: Option<Duration>,
     is_over: impl Fn() -> bool,
 ) -> Result<Entry, String> {
     session.subscribe(&key::begins_of_all(), BEGINS)?;
@@ -74,7 +79,8 @@ pub fn enter(
     let mut wait = if is_fresh || session.is_router() { SETTLES } else { ANSWERS };
     let begin = Instant::now();
     let (mut since, mut looked) = (begin, begin);
-    let mut link = port.link_state();
+    let mut link = LinkState::default();
+    let mut down_since = begin;
     let mut asked: Option<Instant> = None;
     let mut running: BTreeMap<u64, Running> = BTreeMap::new();
     loop {
@@ -82,6 +88,9 @@ pub fn enter(
             since = Instant::now();
         }
         let before = std::mem::replace(&mut link, port.link_state());
+        if link.is_down && (!before.is_down || link.losses > before.losses) {
+            down_since = Instant::now();
+        }
         if link.is_down && !before.is_down {
             tell("the link to the network is lost: the components begin when it is there again".to_owned());
         }
@@ -149,6 +158,9 @@ pub fn enter(
         }
         if is_over() {
             return Ok(Entry::Over);
+        }
+        if link.is_down && longest.is_some_and(|longest| down_since.elapsed() >= longest) {
+            return Ok(Entry::Lost);
         }
         sleep(LOOK);
     }

@@ -20,6 +20,7 @@ struct Entering {
     wire: Arc<Wire>,
     port: Arc<Port>,
     entered: Mutex<Option<Result<(Entry, u64), String>>>,
+    told: Mutex<Vec<String>>,
 }
 
 impl Entering {
@@ -41,14 +42,26 @@ impl Entering {
 
 /// Lets a program enter while something happens. Gives the outcome, with the date of the program.
 fn entered(url: &str, is_fresh: bool, is_router: bool, meanwhile: impl Fn(&Entering)) -> Result<(Entry, u64), String> {
+    entered_within(url, is_fresh, is_router, None, meanwhile)
+}
+
+/// The same where a link that is lost is waited for so long.
+fn entered_within(
+    url: &str,
+    is_fresh: bool,
+    is_router: bool,
+    longest: Option<Duration>,
+    meanwhile: impl Fn(&Entering),
+) -> Result<(Entry, u64), String> {
     let (wire, port) = (Arc::<Wire>::default(), Arc::<Port>::default());
     WIRES.lock().unwrap().insert(url.to_owned(), Arc::clone(&wire));
     let session = session(url, &port, is_router);
-    let entering = Entering { wire, port, entered: Mutex::default() };
+    let entering = Entering { wire, port, entered: Mutex::default(), told: Mutex::default() };
     thread::scope(|scope| {
         scope.spawn(|| {
             let mut settings = own();
-            let entry = enter(&session, &entering.port, &mut settings, is_fresh, |_| {}, || false);
+            let tell = |text| entering.told.lock().unwrap().push(text);
+            let entry = enter(&session, &entering.port, &mut settings, is_fresh, tell, longest, || false);
             *entering.entered.lock().unwrap() = Some(entry.map(|entry| (entry, settings.began)));
         });
         meanwhile(&entering);
@@ -104,6 +117,17 @@ fn a_link_that_comes_again_lets_it_ask_anew() {
         answers_late(entering);
     });
     assert!(outcome.is_err(), "{outcome:?}");
+}
+
+#[test]
+fn a_link_that_is_lost_while_a_program_enters_is_told_and_waited_for_no_longer_than_asked() {
+    let outcome = entered_within("gone", false, false, Some(Duration::from_millis(50)), |entering| {
+        entering.port.link(false, "");
+        wait("it waits for ever", || entering.has_entered());
+        let told = entering.told.lock().unwrap();
+        assert!(told.len() == 1 && told[0].starts_with("the link to the network is lost"), "{told:?}");
+    });
+    assert_eq!(outcome.map(|(entry, _)| entry), Ok(Entry::Lost));
 }
 
 #[test]
