@@ -1,6 +1,8 @@
 //! What the exchange wants, carried out.
 
 use std::sync::Arc;
+use std::thread::sleep;
+use std::time::Duration;
 
 use saoms_api::Level;
 use saoms_api::host::cdr;
@@ -15,16 +17,25 @@ use crate::network::{Fleet, key};
 /// The kind of alerts of programs that give no sign of life.
 const UNREACHABLE: &str = "unreachable";
 
+/// How often the last sign of life is put, and the time between. It goes as data does, which a transport that has no
+/// room for it drops; nobody asks for it again, and who hears it twice has heard it.
+const LAST_SIGNS: usize = 3;
+const BETWEEN_LAST_SIGNS: Duration = Duration::from_millis(5);
+
 impl<F: Fleet> Member<F> {
     pub(super) fn carry_out(&mut self) {
         if self.hands_over_at.is_some() {
             // What another thread had no time for is for that of the network.
             return self.act();
         }
+        self.put_unsent();
+        self.act();
+    }
+
+    fn put_unsent(&mut self) {
         let mut unsent = std::mem::take(&mut self.unsent);
         unsent.put(|Unsent { key, bytes, envelope, is_urgent }| self.put(key, bytes, envelope.as_deref(), *is_urgent));
         self.unsent = unsent;
-        self.act();
     }
 
     /// Does what the exchange wants.
@@ -33,7 +44,16 @@ impl<F: Fleet> Member<F> {
             match action {
                 Action::Subscribe(keys) => self.subscribe(keys),
                 Action::Unsubscribe(keys) => self.unsubscribe(&keys),
-                Action::Put { to, bytes } => self.put_or_keep(&to, bytes, None),
+                Action::Put { to, bytes } => {
+                    self.put_or_keep(&to, Arc::clone(&bytes), None);
+                    if matches!(to, Destination::Leaves(_)) {
+                        for _ in 1..LAST_SIGNS {
+                            sleep(BETWEEN_LAST_SIGNS);
+                            self.put_unsent();
+                            self.put_or_keep(&to, Arc::clone(&bytes), None);
+                        }
+                    }
+                }
                 Action::Send { to, frame } => {
                     let (bytes, envelope) = frame.encode();
                     self.put_or_keep(&to, bytes, Some(envelope));
