@@ -21,6 +21,8 @@ struct Meeting {
     from: Block,
     other: u32,
     block: Block,
+    /// True if the other one then entered the block that this one came from.
+    is_exchange: bool,
 }
 
 impl Floor {
@@ -29,9 +31,11 @@ impl Floor {
         if self.held.get(&robot) == Some(&[block, next]) {
             return;
         }
-        let exchanges = |one: &Meeting| one.other == robot && one.block == block && one.from == next;
-        if let Some(place) = self.meetings.iter().position(exchanges) {
-            let Meeting { entered, .. } = self.meetings.remove(place);
+        let exchanges =
+            |one: &Meeting| !one.is_exchange && one.other == robot && one.block == block && one.from == next;
+        if let Some(meeting) = self.meetings.iter_mut().find(|one| exchanges(one)) {
+            meeting.is_exchange = true;
+            let entered = meeting.entered;
             finder.note(NO_SWAP, format!("robots {entered} and {robot} exchange {next} and {block}, as they say"));
         }
         self.release(robot);
@@ -47,7 +51,7 @@ impl Floor {
                     |one: &Meeting| [(one.entered, one.other), (one.other, one.entered)].contains(&(robot, other));
                 if !self.meetings.iter().any(knows) {
                     finder.note(ONE_IN_A_BLOCK, format!("robots {robot} and {other} are in {held}, as they say"));
-                    self.meetings.push(Meeting { entered: robot, from: block, other, block: held });
+                    self.meetings.push(Meeting { entered: robot, from: block, other, block: held, is_exchange: false });
                 }
             }
             if !holders.contains(&robot) {
