@@ -91,7 +91,8 @@ fn who_was_stopped_has_its_last_word_in_the_next_program() {
         handle.stop();
     });
     let crash = crash.unwrap();
-    run(fleet, real(100), crash.path(), |_| {});
+    // It is still paused.
+    run(fleet, real(100), crash.path(), |handle| handle.resume().unwrap());
     let (report, told) = run(fleet, real(60), crash.path(), |handle| assert!(!handle.is_running("A").unwrap()));
     assert!(behind(&told, "H: has heard up to ").starts_with('1') && !told.contains("gap"), "{told}");
     assert_eq!(crate::fleet::of(&report, "A").executions, 0);
@@ -142,7 +143,7 @@ fn what_nobody_had_read_is_heard_again_after_a_failure_in_the_next_program() {
         crash = Some(copy(folder.path()));
         handle.stop();
     });
-    let (_, told) = run(fleet, real(100), crash.unwrap().path(), |_| {});
+    let (_, told) = run(fleet, real(100), crash.unwrap().path(), |handle| handle.resume().unwrap());
     assert!(told.contains("it does not know numbers"), "{told}");
     assert_eq!(told.matches("N: has heard 42").count(), 1, "{told}");
 }
