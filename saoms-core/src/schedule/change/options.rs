@@ -21,8 +21,8 @@ pub struct ChangeOptions {
     pub by: Option<String>,
     /// The way to take the change back while somebody else waits for it.
     pub withdrawal: ChangeWithdrawal,
-    /// What a text that [outlives the program](super::Handle::share_text) is from the instant on at which the change
-    /// takes effect: a later program has both or none.
+    /// What a text that [outlives the program](crate::schedule::Handle::share_text) is from the instant on at which the
+    /// change takes effect: a later program has both or none.
     pub keeps: Option<(SharedText, String)>,
 }
 
