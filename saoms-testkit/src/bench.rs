@@ -53,7 +53,7 @@ pub struct Bench {
 }
 
 /// Component index of the sender of the test's messages.
-const TEST: u32 = u32::MAX;
+pub(crate) const TEST: u32 = u32::MAX;
 
 impl Bench {
     /// A component of a class that the test links, with these values of its properties.

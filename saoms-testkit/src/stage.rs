@@ -270,6 +270,11 @@ const fn level_name(level: Level) -> &'static str {
 }
 
 impl Host for Stage {
+    /// A test speaks for everybody.
+    fn speaker(&self, _: &str, _: u32) -> Option<u32> {
+        Some(crate::bench::TEST)
+    }
+
     fn name(&self) -> &str {
         NAME
     }

@@ -63,8 +63,8 @@ impl Supply {
         gains
     }
 
-    /// True if faults are why the battery is empty so many blocks from its charger: they drained it, or took the charger,
-    /// or what it lost while they kept the robot would have lasted for these blocks, as it drove before.
+    /// True if faults are why the battery is empty so many blocks from its charger: they drained it, or took the
+    /// charger, or what it lost while they kept the robot would have lasted for these blocks, as it drove before.
     pub(super) fn is_excused(&self, blocks: u32) -> bool {
         let needed = self.used / f64::from(self.moves.max(1)) * f64::from(blocks);
         self.strained.is_some() || self.kept > 0.0 && self.kept >= needed

@@ -8,8 +8,8 @@ use super::ledger::{Ledger, Member};
 use crate::grid::Block;
 use crate::messages::Standing;
 
-/// Number of rounds for which robots have not moved before they count as a deadlock, and of the longest moves that there
-/// are: of two robots that wait, one may have to wait until others behind it are out of its way.
+/// Number of rounds for which robots have not moved before they count as a deadlock, and of the longest moves that
+/// there are: of two robots that wait, one may have to wait until others behind it are out of its way.
 ///
 /// Maneuvers are looked for after 4, 8, 16 and 32 rounds without a move. By then there is none, or what came of it has
 /// changed nothing. Rounds in which a robot is in one do not count: it may wait long for its move over an edge.

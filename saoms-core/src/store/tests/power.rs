@@ -72,7 +72,8 @@ struct State {
 }
 
 impl Losses<'_> {
-    /// The number of bytes of each of the batches, of which many together make the log so large that it is written anew.
+    /// The number of bytes of each of the batches, of which many together make the log so large that it is
+    /// written anew.
     const SIZE: usize = 40_000;
     const BATCHES: u64 = 150;
 
