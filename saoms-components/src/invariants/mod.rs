@@ -3,7 +3,8 @@
 //! 1. No two robots are in a block. 2. No two robots exchange their blocks. 3. A move is one block, to a free
 //!    neighbour. 4. A piece of luggage is where it was put, on exactly one robot, or delivered, which happens
 //!    once. 5. No battery is empty away from a charger. 6. No robot with a job stands still for ever. 7. Once
-//!    faults are over, each request is finished. 8. The luggage of a broken robot is taken over. 9, that the same seed has the same trace, is judged by whoever runs a seed twice.
+//!    faults are over, each request is finished. 8. The luggage of a broken robot is taken
+//!    over. 9, that the same seed has the same trace, is judged by whoever runs a seed twice.
 
 mod bearers;
 mod floor;
