@@ -4,7 +4,7 @@
 //! name the cells that changed: so a program knows of which cells it lacks something, and asks for their states
 //! (*looks*). It looks also when it begins to read a cell.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::wire::{CellChange, InCell};
 use super::{LATENESS, LONGEST_WAIT};
@@ -106,6 +106,22 @@ impl ReadCells {
             state.reach(last);
             (self.looks, self.look_at) = (0, None);
         }
+    }
+
+    /// Looks again, soon, at cells of which something that has left them came after the last look: its sender does not
+    /// know that it has to say where it went.
+    pub(super) fn doubt(&mut self, cells: &BTreeSet<Cell>, now: u64) {
+        for cell in cells {
+            if let Some(state) = self.cells.get_mut(cell) {
+                state.is_known = false;
+                self.look_at.get_or_insert(now + LATENESS);
+            }
+        }
+    }
+
+    /// True if all that concerns a cell is here, up to this number and beyond.
+    pub(super) fn has_all(&self, cell: Cell, number: u64) -> bool {
+        self.cells.get(&cell).is_some_and(|state| state.is_known && number <= state.has)
     }
 
     /// Notes that nothing is missing, or looks soon.

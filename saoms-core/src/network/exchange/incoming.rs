@@ -1,6 +1,6 @@
 //! The messages of another program on one topic, on their way to the components of this one.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
 use super::around::ReadCells;
@@ -90,14 +90,16 @@ impl Incoming {
     /// was here before.
     pub(super) fn take_state(&mut self, number: u64, arrived: Arrived, cells: &[InCell]) -> Option<Arrived> {
         self.last = self.last.max(number);
+        let cell = cells.iter().find(|cell| !cell.has_left).map(|cell| (cell.x, cell.y));
+        // What is not here, although all of its cell is, has left that meanwhile.
+        let is_outdated = self.around.as_ref().zip(cell).is_some_and(|(around, cell)| around.has_all(cell, number));
         if let Some(around) = &mut self.around {
             cells.iter().for_each(|cell| around.take(number, *cell));
         } else if (self.next == 0 || number >= self.next) && self.waiting.len() < MOST_WAITING {
             self.waiting.insert(number, None);
             self.advance();
         }
-        let cell = cells.iter().find(|cell| !cell.has_left).map(|cell| (cell.x, cell.y));
-        self.take_newest(number, arrived, cell)
+        if is_outdated { None } else { self.take_newest(number, arrived, cell) }
     }
 
     /// Gives a message of a state topic, unless a newer one of its component and key was here before.
@@ -121,6 +123,12 @@ impl Incoming {
         let mut known: Vec<KnownState> = known.collect();
         known.sort_unstable_by_key(|known| known.number);
         known
+    }
+
+    /// The cells in which messages are here, up to this number, that are not among those that are there.
+    pub(super) fn ghosts(&self, cells: &BTreeSet<Cell>, last: u64, here: &HashSet<u64>) -> BTreeSet<Cell> {
+        let gone = self.newest.values().filter(|(number, _)| *number <= last && !here.contains(number));
+        gone.filter_map(|(_, cell)| cell.filter(|cell| cells.contains(cell))).collect()
     }
 
     /// Reads all of a topic of which some cells were read: asks again for what there is.

@@ -1,6 +1,6 @@
 //! Reading cells of a state topic: which ones, and what is asked and answered of them.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
 use saoms_api::host::cdr;
@@ -144,7 +144,7 @@ impl Exchange {
         let is_new = |sent: &Sent| known.get(&sent.key()).is_none_or(|number| *number < sent.number);
         let cells: BTreeSet<Cell> = look.cells.iter().take(MOST_CELLS).map(|cell| (cell.x, cell.y)).collect();
         let mut inside: BTreeMap<Cell, Vec<&Sent>> = BTreeMap::new();
-        for sent in newest.values().filter(|sent| is_new(sent)) {
+        for sent in newest.values() {
             if let Some(cell) = sent.cell().filter(|cell| cells.contains(cell)) {
                 inside.entry(cell).or_default().push(sent);
             }
@@ -152,14 +152,17 @@ impl Exchange {
         let left = known.keys().filter_map(|key| outgoing.newest(key));
         let mut found: Vec<&Sent> =
             left.filter(|sent| is_new(sent) && sent.cell().is_none_or(|cell| !cells.contains(&cell))).collect();
-        let (mut size, mut shown) = (found.iter().map(|sent| sent.bytes.len()).sum::<usize>(), Vec::new());
+        let mut size = found.iter().map(|sent| sent.bytes.len()).sum::<usize>();
+        let (mut shown, mut here) = (Vec::new(), Vec::new());
         for cell in cells {
             if size > MOST_BYTES {
                 break;
             }
-            let here = inside.remove(&cell).unwrap_or_default();
-            size += here.iter().map(|sent| sent.bytes.len()).sum::<usize>();
-            found.extend(here);
+            let (new, known): (Vec<&Sent>, Vec<&Sent>) =
+                inside.remove(&cell).unwrap_or_default().into_iter().partition(|sent| is_new(sent));
+            size += new.iter().map(|sent| sent.bytes.len()).sum::<usize>();
+            here.extend(known.into_iter().map(|sent| sent.number));
+            found.extend(new);
             shown.push(named(&cell));
         }
         let around = Around {
@@ -169,6 +172,7 @@ impl Exchange {
             last: outgoing.last,
             cells: shown,
             schema: found.first().map_or(0, |sent| sent.schema),
+            here,
             messages: found.into_iter().map(state).collect(),
         };
         let to = Destination::Around(look.reader, Arc::clone(topic));
@@ -177,7 +181,7 @@ impl Exchange {
 
     /// Another program answers what this one asked of cells. True if something is missing still.
     pub fn see(&mut self, around: Around, now: u64) -> bool {
-        let Around { program, topic, number: look, last, cells, schema, messages } = around;
+        let Around { program, topic, number: look, last, cells, schema, here, messages } = around;
         let Some((topic, own)) = self.reads.get_key_value(topic.as_str()) else { return false };
         let (topic, expected) = (Arc::clone(topic), own.schema);
         let Some(peer) = self.peers.get_mut(&program).filter(|_| last <= LARGEST_NUMBER) else { return false };
@@ -191,13 +195,17 @@ impl Exchange {
         let Some(incoming) = peer.incoming.get_mut(&topic).filter(|incoming| incoming.around.is_some()) else {
             return false;
         };
+        let here: HashSet<u64> = here.into_iter().chain(messages.iter().map(|message| message.number)).collect();
         let (mut ready, mut is_missing) = (Vec::new(), false);
         for message in messages.into_iter().filter(|message| message.number <= LARGEST_NUMBER) {
             let (number, cell) = (message.number, message.cell.map(|CellName { x, y }| (x, y)));
             ready.extend(incoming.take_newest(number, arrived(message), cell));
         }
+        let cells: BTreeSet<Cell> = cells.iter().map(|cell| (cell.x, cell.y)).collect();
+        let ghosts = incoming.ghosts(&cells, last, &here);
         if let Some(read) = &mut incoming.around {
-            cells.iter().for_each(|cell| read.see((cell.x, cell.y), look, last));
+            cells.iter().for_each(|cell| read.see(*cell, look, last));
+            read.doubt(&ghosts, now);
             read.settle(now);
             is_missing = read.look_at.is_some();
         }

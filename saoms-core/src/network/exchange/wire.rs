@@ -266,6 +266,8 @@ pub struct Around {
     pub cells: Vec<CellName>,
     /// The hash of the schema of the messages.
     pub schema: u64,
+    /// The numbers of what is in these cells and the reader knows: what else it has there has left them.
+    pub here: Vec<u64>,
     /// What the reader lacks.
     pub messages: Vec<AroundState>,
 }

@@ -104,6 +104,7 @@ fn said() -> impl Strategy<Value = Said> {
             last: number[1],
             cells: vec![CellName { x: 0, y: 0 }, CellName { x: 7, y: 7 }],
             schema: number[2] % 2,
+            here: number.clone(),
             messages: number.iter().map(message).collect(),
         })
     });
