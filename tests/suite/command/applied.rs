@@ -83,7 +83,8 @@ fn a_kill_while_a_change_is_made_leaves_one_fleet_whole() {
     assert!(answered > 0 && changed > 0, "{answered} of the changes were answered");
     // All that was accepted is brought by the fleet with all robots.
     fs::write(folder.join("f.composite"), &fleets[1]).unwrap();
-    let output = saoms_in(&folder, &["run", "f.composite", "--state", "state", "--invariants", "--control", "none"]);
+    let run = ["run", "f.composite", "--state", "state", "--invariants", "--control", "none", "--for", "120s"];
+    let output = saoms_in(&folder, &run);
     let told = text(&output);
     assert_eq!(output.status.code(), Some(0), "{told}");
     let done = format!("{accepted} of {accepted} pieces of luggage delivered, no collision");

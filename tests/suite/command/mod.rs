@@ -1,5 +1,6 @@
 //! The command as a user meets it.
 
+mod absent;
 mod applied;
 mod contributions;
 mod ending;

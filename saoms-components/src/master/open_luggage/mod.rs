@@ -142,6 +142,7 @@ impl OpenLuggage {
                 ("from", block(piece.from)),
                 ("to", block(piece.to)),
                 ("waits", piece.waits.into()),
+                ("robot", piece.taken.or(piece.asked).map_or(ReportValue::Null, ReportValue::from)),
             ]))
         };
         let number = |number: usize| ReportValue::from(i64::try_from(number).unwrap_or(i64::MAX));

@@ -1,6 +1,6 @@
 //! The start of a fleet that goes on from what an earlier program left.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -373,6 +373,7 @@ impl Engine {
                 self.tell_loss(index, true, now);
             }
         }
+        self.tell_absent(&recalled, now);
         let forgotten = recalled.events.unread.iter().filter(|unread| {
             let number = self.numbers.get(unread.component.as_str());
             !number.is_some_and(|number| self.slots[*number as usize].is_member())
@@ -407,6 +408,27 @@ impl Engine {
             let stopped: Vec<u32> =
                 (0..self.slots.len() as u32).filter(|index| self.slots[*index as usize].is_stopped()).collect();
             self.log_stopped(&stopped, true, None, now);
+        }
+    }
+
+    /// Tells of components that an earlier program had and that are no part of the fleet any more. What they had begun
+    /// is left to others, so that they begin anew if they are there again.
+    fn tell_absent(&mut self, recalled: &Recalled, now: u64) {
+        let elsewhere: HashSet<String> = self.members_everywhere().map(|(_, spec)| spec.path.clone()).collect();
+        for index in 0..self.slots.len() as u32 {
+            let slot = &self.slots[index as usize];
+            let name = Arc::clone(&slot.name);
+            let Some(known) = recalled.components.get(&*name).filter(|_| !elsewhere.contains(&*name)) else { continue };
+            let said = recalled.states.iter().filter(|(_, form)| *form.sender == *name);
+            let said: Vec<(&str, &[u8])> = said.map(|(topic, form)| (&**topic, &form.bytes[..])).collect();
+            if self.tell_absence(&name, &known.form.site, &said, now) {
+                self.note_differs(index, now);
+                let text = format!(
+                    "`{name}` is no part of the fleet any more: the others hear that it has failed, and it begins anew \
+                     if it is there again"
+                );
+                self.note(now, Occurrence::Note { level: Level::Warning, text });
+            }
         }
     }
 
