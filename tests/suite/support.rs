@@ -5,6 +5,8 @@ use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
 use std::time::Duration;
 
 use serde_json::Value;
@@ -102,7 +104,29 @@ pub(crate) fn saoms(arguments: &[&str]) -> Output {
 
 /// Runs `saoms` in a folder.
 pub(crate) fn saoms_in(folder: &Path, arguments: &[&str]) -> Output {
-    command(arguments).current_dir(folder).output().unwrap()
+    let mut run = command(arguments);
+    run.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    output_of(run.spawn().unwrap())
+}
+
+/// Longest time that a test waits for a command to end by itself.
+const LONGEST: Duration = Duration::from_secs(300);
+
+/// The output of a command once it has ended. One that does not end is killed: what it told until then is in the
+/// output.
+pub(crate) fn output_of(child: Child) -> Output {
+    let process = child.id().cast_signed();
+    let (ends, ended) = channel::<()>();
+    let watch = thread::spawn(move || {
+        if ended.recv_timeout(LONGEST) == Err(RecvTimeoutError::Timeout) {
+            // SAFETY: a system call without pointers. The process is a child that nobody has waited for to its end.
+            unsafe { libc::kill(process, libc::SIGKILL) };
+        }
+    });
+    let output = child.wait_with_output().unwrap();
+    drop(ends);
+    watch.join().unwrap();
+    output
 }
 
 /// Runs `saoms` in a folder with this text on standard input.
@@ -116,7 +140,7 @@ pub(crate) fn fed(command: &mut Command, input: &[u8]) -> Output {
     let mut child = pipes.spawn().unwrap();
     // A command that reads no input closes it.
     let _ = child.stdin.take().unwrap().write_all(input);
-    child.wait_with_output().unwrap()
+    output_of(child)
 }
 
 pub(crate) fn code(output: &Output) -> i32 {
