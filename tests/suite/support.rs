@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -95,6 +96,18 @@ pub(crate) fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Re
         return Err(io::Error::other(answer));
     }
     Ok(serde_json::from_str(body)?)
+}
+
+/// Sets what a process does on a hangup. Who starts the tests may ignore hangups, as `nohup` does, and processes inherit
+/// that.
+pub(crate) fn on_hangup(run: &mut Command, action: libc::sighandler_t) {
+    // SAFETY: the call between fork and exec is one that signal handlers may make.
+    unsafe {
+        run.pre_exec(move || {
+            libc::signal(libc::SIGHUP, action);
+            Ok(())
+        });
+    }
 }
 
 /// Runs `saoms` in the folder of the repository.

@@ -2,14 +2,13 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read};
-use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::thread;
 
 use serde_json::Value;
 
-use crate::support::{command, empty_folder, stderr};
+use crate::support::{command, empty_folder, on_hangup, stderr};
 
 /// A fleet of one robot that runs until it is stopped.
 const ENDLESS: &str = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="one" targetNamespace="urn:one">
@@ -26,20 +25,8 @@ fn endless(folder: &Path, arguments: &[&str]) -> Command {
     fs::write(folder.join("one.composite"), ENDLESS).unwrap();
     let mut run = command(&[&["run", "one.composite", "--console", "classic"], arguments].concat());
     run.current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
-    // Who starts the tests may ignore hangups, as `nohup` does.
     on_hangup(&mut run, libc::SIG_DFL);
     run
-}
-
-/// Sets what a process does on a hangup.
-fn on_hangup(run: &mut Command, action: libc::sighandler_t) {
-    // SAFETY: the call between fork and exec is one that signal handlers may make.
-    unsafe {
-        run.pre_exec(move || {
-            libc::signal(libc::SIGHUP, action);
-            Ok(())
-        });
-    }
 }
 
 /// Reads up to the first execution, so that the fleet runs.

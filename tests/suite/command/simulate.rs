@@ -10,7 +10,7 @@ use std::time::Duration;
 use expect_test::expect;
 use serde_json::Value;
 
-use crate::support::{PROGRAM, command, empty_folder, root, saoms, saoms_in, stdout};
+use crate::support::{PROGRAM, command, empty_folder, on_hangup, root, saoms, saoms_in, stdout};
 
 fn simulate(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
     let composite = root().join("composites/airport.composite");
@@ -201,7 +201,9 @@ fn wrong_input_starts_nothing() {
 fn a_signal_ends_it_with_130_and_the_processes_of_its_seeds() {
     for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGHUP] {
         let arguments = ["simulate", "composites/storm.composite", "--seeds", "100000", "-j", "1"];
-        let mut child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut run = command(&arguments);
+        on_hangup(run.stdout(Stdio::piped()).stderr(Stdio::piped()), libc::SIG_DFL);
+        let mut child = run.spawn().unwrap();
         // A process that runs seeds has the same standard error, which is closed once all have ended.
         while threads_with_children(child.id()) == 0 {
             thread::sleep(Duration::from_millis(5));

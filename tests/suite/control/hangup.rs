@@ -4,13 +4,12 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::os::fd::{FromRawFd, OwnedFd};
 use std::os::unix::process::CommandExt;
-use std::process::Command;
 use std::thread::sleep;
 use std::time::Duration;
 
 use super::{Running, component, composite, fleet};
 use crate::boundary::build::library;
-use crate::support::{command, text};
+use crate::support::{command, on_hangup, text};
 
 /// The fleet with a choice.
 fn with(hangup: &str) -> String {
@@ -21,21 +20,10 @@ fn chosen(fleet: &str, hangup: &str) -> String {
     fleet.replacen(" name=\"fleet\"", &format!(" name=\"fleet\" xmlns:s=\"urn:saoms:1\" s:hangup=\"{hangup}\""), 1)
 }
 
-/// Lets a process take SIGHUP, whoever started the tests.
-fn hears_hangup(run: &mut Command) {
-    // SAFETY: the call between fork and exec is one that signal handlers may make.
-    unsafe {
-        run.pre_exec(|| {
-            libc::signal(libc::SIGHUP, libc::SIG_DFL);
-            Ok(())
-        });
-    }
-}
-
 fn start(fleet: &str, arguments: &[&str]) -> Running {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("fleet.composite"), fleet).unwrap();
-    Running::start_with(folder, arguments, hears_hangup)
+    Running::start_with(folder, arguments, |run| on_hangup(run, libc::SIG_DFL))
 }
 
 fn send(pid: u32, signal: i32) {
@@ -196,7 +184,7 @@ fn on_terminal(hangup: &str) -> (Running, File) {
     let running = Running::start_with(folder, &["--stay"], move |run| {
         run.stdin(programs.try_clone().unwrap()).stdout(programs.try_clone().unwrap()).stderr(programs);
         run.env("TERM", "xterm");
-        hears_hangup(run);
+        on_hangup(run, libc::SIG_DFL);
         // SAFETY: the calls between fork and exec are ones that signal handlers may make.
         unsafe {
             run.pre_exec(|| {
