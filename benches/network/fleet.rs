@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use saoms_core::network::control::{ControlRequest, Reply};
 use saoms_core::network::exchange;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportSession};
-use saoms_core::network::{Client, Membership, Port};
+use saoms_core::network::{Client, Entrance, Membership, Port};
 use saoms_core::schedule::{NetworkHooks, RunningFleet, Settings, StartError};
 
 use super::common::composite::{Composite, Task};
@@ -82,8 +82,12 @@ pub(super) fn run(program: &Program) -> Outcome<()> {
             others: BTreeSet::new(),
             memory: None,
         };
-        let joined = Client::start(session, &port, member, Membership::default(), fleet);
-        client = Some(joined.map_err(|error| StartError::Network { url: url.clone(), error })?);
+        let (mut entrance, membership) = (Entrance::default(), Membership::default());
+        let failed = |error| StartError::Network { url: url.clone(), error };
+        entrance.add(session, &port, member, &membership, false, Instant::now()).map_err(failed)?;
+        if let Some(entered) = entrance.into_all().pop() {
+            client.insert(Client::prepare(entered, membership, fleet).map_err(failed)?).begin();
+        }
         Ok(())
     })?;
     let ended = deploy::finish(fleet).map(|_| ());

@@ -7,18 +7,18 @@ mod member;
 mod tests;
 mod unsent;
 
+use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
 use saoms_api::host::contain::contained;
 
-use super::exchange::Settings;
 use super::fleet::{Fleet, Membership};
 use super::key;
 use super::port::{AtOnce, Port};
 use super::transport::{Delivered, TransportSession};
-pub use enter::{Entry, enter};
+pub use enter::{Entered, Entrance, Entry, Refused};
 use member::{Linger, Member};
 
 /// Tokens of subscriptions.
@@ -46,49 +46,68 @@ const START_LOOK: Duration = Duration::from_millis(10);
 #[derive(Debug)]
 pub struct Client {
     port: Arc<Port>,
+    /// Until others are to hear of the program, what lets its thread begin.
+    gate: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Client {
-    /// Takes part in a network that a transport has joined, and that delivers to the port.
+    /// Prepares to take part in a network: no other program hears of this one before it [begins](Self::begin).
     ///
     /// # Errors
-    /// The transport refuses a subscription, or the system a thread: why.
-    pub fn start(
-        session: TransportSession,
-        port: &Arc<Port>,
-        settings: Settings,
-        membership: Membership,
-        fleet: impl Fleet,
-    ) -> Result<Client, String> {
-        let program = settings.program;
-        // Those of other versions, too: they are told.
-        session.subscribe(&key::alive_of_all(), ALIVE)?;
-        session.subscribe(&key::ask(program), ASK)?;
-        session.subscribe(&key::covered(program), COVERED)?;
-        session.subscribe(&key::look(program), LOOK)?;
-        if membership.has_calls {
-            session.subscribe(&key::call(program), CALL)?;
-            session.subscribe(&key::reply(program), REPLY)?;
-        }
-        session.subscribe(&key::control_of_all(), CONTROL)?;
-        if membership.user.is_some() {
-            session.subscribe(&key::access(), ACCESS)?;
-        }
-        let member = Arc::new(Mutex::new(Member::new(session, port, settings, membership, fleet)));
-        let at_once: Weak<Mutex<Member<_>>> = Arc::downgrade(&member);
-        port.let_take(at_once);
-        let own = Arc::clone(port);
+    /// The system refuses a thread: why.
+    pub fn prepare(entered: Entered, membership: Membership, fleet: impl Fleet) -> Result<Client, String> {
+        let Entered { session, port, settings } = entered;
+        let member = Arc::new(Mutex::new(Member::new(session, &port, settings, membership, fleet)));
+        let (gate, is_open) = channel();
+        let own = Arc::clone(&port);
         let thread = std::thread::Builder::new().name("saoms-network".to_owned());
         let begin = move || {
+            if is_open.recv().is_err() {
+                // The program does not begin: it leaves without a word.
+                own.end();
+                let session = lock(&member).take_session();
+                return drop(session);
+            }
+            let at_once: Weak<Mutex<Member<_>>> = Arc::downgrade(&member);
+            own.let_take(at_once);
             let ended = contained(|| run(&member, &own)).unwrap_or_else(|failure| Err(failure.to_string()));
             if let Err(failure) = ended {
                 break_down(&member, &own, &failure);
             }
         };
         let thread = thread.spawn(begin).map_err(|error| error.to_string())?;
-        Ok(Client { port: Arc::clone(port), thread: Some(thread) })
+        Ok(Client { port, gate: Some(gate), thread: Some(thread) })
     }
+
+    /// Takes part in the network from now on.
+    pub fn begin(&mut self) {
+        if let Some(gate) = self.gate.take() {
+            // Its thread waits for nothing else.
+            let _ = gate.send(());
+        }
+    }
+}
+
+/// Subscribes to what programs say to this one beside the messages of components.
+///
+/// # Errors
+/// The transport refuses it: why.
+fn subscribe(session: &TransportSession, program: u64, membership: &Membership) -> Result<(), String> {
+    // Those of other versions, too: they are told.
+    session.subscribe(&key::alive_of_all(), ALIVE)?;
+    session.subscribe(&key::ask(program), ASK)?;
+    session.subscribe(&key::covered(program), COVERED)?;
+    session.subscribe(&key::look(program), LOOK)?;
+    if membership.has_calls {
+        session.subscribe(&key::call(program), CALL)?;
+        session.subscribe(&key::reply(program), REPLY)?;
+    }
+    session.subscribe(&key::control_of_all(), CONTROL)?;
+    if membership.user.is_some() {
+        session.subscribe(&key::access(), ACCESS)?;
+    }
+    Ok(())
 }
 
 impl Client {
@@ -106,6 +125,7 @@ impl Client {
 
 impl Drop for Client {
     fn drop(&mut self) {
+        self.gate = None;
         self.port.close(false);
         if let Some(thread) = self.thread.take() {
             // Its panic was written to standard error.

@@ -18,7 +18,7 @@ pub mod transport;
 /// The component that messages come from which no component of the fleet sends. A program adds its number.
 pub(crate) const FROM_OUTSIDE: &str = "(outside)";
 
-pub use client::{Client, Entry, enter};
+pub use client::{Client, Entered, Entrance, Entry, Refused};
 pub use fleet::{Fleet, Membership, Undelivered};
 pub(crate) use port::FromRun;
 pub use port::Port;

@@ -6,8 +6,10 @@ mod settings;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher, RandomState};
+use std::panic::resume_unwind;
 use std::sync::Arc;
-use std::thread::sleep;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, sleep};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use saoms_api::Level;
@@ -16,7 +18,7 @@ use saoms_core::network::exchange::Settings;
 use saoms_core::network::exchange::wire::LARGEST_NUMBER;
 use saoms_core::network::rights::Granted;
 use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession, peers};
-use saoms_core::network::{Client, Entry, Membership, Port, enter};
+use saoms_core::network::{Client, Entrance, Entry, Membership, Port, Refused as Occupied};
 use saoms_core::schedule::{Handle, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Diagnostic;
@@ -35,6 +37,10 @@ const MOST_REASONS: usize = 8;
 const TO_DO: &str = "start it, or correct `url`";
 /// Pause before a network is tried again that is not there yet.
 const PAUSE: Duration = Duration::from_millis(200);
+/// Time between two looks at what others say before the components begin.
+const LOOK: Duration = Duration::from_millis(5);
+/// The bits of the number of a program that differ between its networks.
+const NETWORK_BITS: u64 = 0xff;
 /// Time without a sign of life after which a program is missed: three of its longest periods, between these. Signs of
 /// life wait for no execution, so that more would only keep people, and the end, waiting.
 const LEAST_PATIENCE: Duration = Duration::from_secs(1);
@@ -74,6 +80,13 @@ struct Network {
     others: BTreeSet<String>,
     settings: SessionSettings,
     membership: Membership,
+}
+
+impl Network {
+    /// Who joins it.
+    fn who(&self) -> Who<'_> {
+        Who { components: &self.components, router: self.router.as_deref(), settings: &self.settings }
+    }
 }
 
 /// The reason for which there are no networks, which is in the list of diagnostics.
@@ -149,48 +162,40 @@ impl Networks {
                 Err(error) => resolver.no_transport(&url, &described, &error),
             }
         }
+        // Another program may need what this one serves before it serves what this one needs.
+        networks.all.sort_by_key(|network| !network.settings.listen);
         let is_wrong = !resolver.faults.is_empty();
         diagnostics.extend(resolver.faults);
         if is_wrong { Err(Refused) } else { Ok(networks) }
     }
 
     /// Joins the networks, in the code that gets the control before components initialize. Waits for networks that are
-    /// not there yet, until the end is asked for.
+    /// not there yet, until the end is asked for. No network hears of the program before all accept it.
     ///
     /// # Errors
-    /// One cannot be joined. All others are left again.
+    /// One cannot be joined: none is.
     pub(super) fn join(
         self,
         handle: &Handle,
         signals: &Signalled,
         door: &Arc<Door>,
     ) -> Result<Vec<Client>, StartError> {
-        let mut clients = Vec::new();
-        match self.join_all(handle, signals, door, &mut clients) {
-            Ok(()) => Ok(clients),
-            Err(error) => {
-                clients.into_iter().for_each(Client::abandon);
-                Err(error)
-            }
-        }
-    }
-
-    fn join_all(
-        self,
-        handle: &Handle,
-        signals: &Signalled,
-        door: &Arc<Door>,
-        clients: &mut Vec<Client>,
-    ) -> Result<(), StartError> {
         for note in self.notes {
             handle.note(Level::Warning, note);
         }
-        for Network { transport, components, router, others, settings, membership } in self.all {
+        let wait = Wait { longest: self.wait, limit: self.limit, is_over: &|| signals.has_come() };
+        // Of two programs that begin at once, the same one begins on each of their networks, as the later one.
+        let program = RandomState::new().hash_one(std::process::id()) & !NETWORK_BITS;
+        let date = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+        let mut asking = Asking { entrance: Entrance::default(), handle, wait: &wait, node: self.node.as_deref() };
+        let mut parts = Vec::new();
+        for (number, network) in self.all.iter().enumerate() {
+            let Network { transport, components, others, settings, membership, .. } = network;
             let port: Arc<Port> = Arc::default();
-            let wait = Wait { longest: self.wait, limit: self.limit, is_over: &|| signals.has_come() };
-            let who = Who { components: &components, router: router.as_deref(), settings: &settings };
-            let Some((session, has_waited)) = who.opened(transport, &port, handle, &wait)? else { break };
-            let is_fresh = has_waited || !membership.peers.is_empty();
+            let who = network.who();
+            let Some((session, has_waited)) = asking.open(&self.all, &who, *transport, &port)? else {
+                return Ok(Vec::new());
+            };
             let hooks = Hooks {
                 fleet: handle.clone(),
                 lost_link: self.lost_link,
@@ -198,12 +203,11 @@ impl Networks {
                 door: Arc::clone(door),
             };
             let fleet = handle.use_network(&settings.url, &port, hooks);
-            let program = RandomState::new().hash_one(std::process::id());
-            let date = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+            let program = program | (number as u64 & NETWORK_BITS);
             let memory = fleet.recall(program);
             // The clock may have been set back since the last start.
             let earlier = memory.as_ref().map_or(0, |memory| memory.start);
-            let mut member = Settings {
+            let member = Settings {
                 program,
                 began: u64::try_from(date).unwrap_or_default().max(earlier).min(LARGEST_NUMBER),
                 name: self.name.clone(),
@@ -211,23 +215,82 @@ impl Networks {
                 limit: self.backlog,
                 linger: u64::try_from(self.linger.as_nanos()).unwrap_or(u64::MAX),
                 components: components.clone(),
-                others,
+                others: others.clone(),
                 memory,
             };
-            let tell = |text: String| handle.note(Level::Warning, text);
-            match enter(&session, &port, &mut member, is_fresh, tell, wait.shortest(), || signals.has_come()) {
-                Ok(Entry::Free) => {}
-                Ok(Entry::Over) => break,
-                Ok(Entry::Lost) => return Err(who.gone(&wait)),
-                Err(why) => {
-                    let error = in_node(&why, self.node.as_deref());
-                    return Err(StartError::Network { url: settings.url.clone(), error });
-                }
-            }
-            let client = Client::start(session, &port, member, membership, fleet);
-            clients.push(client.map_err(|error| who.error(&error))?);
+            let is_fresh = has_waited || !membership.peers.is_empty();
+            let added = asking.entrance.add(session, &port, member, membership, is_fresh, Instant::now());
+            added.map_err(|error| who.error(&error))?;
+            parts.push((who, fleet));
         }
-        Ok(())
+        while asking.look(&self.all)? != Entry::Free {
+            if signals.has_come() {
+                return Ok(Vec::new());
+            }
+            sleep(LOOK);
+        }
+        let all = asking.entrance.into_all().into_iter().zip(parts).zip(&self.all);
+        let clients = all.map(|((entered, (who, fleet)), network)| {
+            Client::prepare(entered, network.membership.clone(), fleet).map_err(|error| who.error(&error))
+        });
+        let mut clients = clients.collect::<Result<Vec<Client>, StartError>>()?;
+        clients.iter_mut().for_each(Client::begin);
+        Ok(clients)
+    }
+}
+
+/// A program that asks on networks whether it may begin.
+struct Asking<'a> {
+    entrance: Entrance,
+    handle: &'a Handle,
+    wait: &'a Wait<'a>,
+    /// The node of the program.
+    node: Option<&'a str>,
+}
+
+impl Asking<'_> {
+    /// Whether the program may begin on the networks that it has joined, which are the first of all.
+    fn look(&mut self, all: &[Network]) -> Result<Entry, StartError> {
+        let tell = |text: String| self.handle.note(Level::Warning, text);
+        let entry = self.entrance.look(Instant::now(), self.wait.shortest(), tell);
+        let entry = entry.map_err(|Occupied { place, why }| StartError::Network {
+            url: all.get(place).map(|network| network.settings.url.clone()).unwrap_or_default(),
+            error: in_node(&why, self.node),
+        })?;
+        match entry {
+            Entry::Lost(place) => match all.get(place) {
+                Some(network) => Err(network.who().gone(self.wait)),
+                None => Ok(Entry::Open),
+            },
+            entry => Ok(entry),
+        }
+    }
+
+    /// A session of a network, and whether it was waited for; `None` if the end was asked for before it was there.
+    /// Meanwhile others on the networks before it are answered.
+    fn open(
+        &mut self,
+        all: &[Network],
+        who: &Who<'_>,
+        transport: Transport,
+        port: &Arc<Port>,
+    ) -> Result<Option<(TransportSession, bool)>, StartError> {
+        let (handle, given, is_refused) = (self.handle, self.wait, AtomicBool::new(false));
+        let is_over = || is_refused.load(Ordering::Relaxed) || (given.is_over)();
+        let wait = Wait { is_over: &is_over, ..*given };
+        thread::scope(|scope| {
+            let opening = scope.spawn(|| who.opened(transport, port, handle, &wait));
+            let mut refused = None;
+            while !opening.is_finished() {
+                if refused.is_none() {
+                    refused = self.look(all).err();
+                    is_refused.store(refused.is_some(), Ordering::Relaxed);
+                }
+                sleep(LOOK);
+            }
+            let opened = opening.join().unwrap_or_else(|panic| resume_unwind(panic));
+            refused.map_or(opened, Err)
+        })
     }
 }
 
@@ -238,7 +301,7 @@ struct Wait<'a> {
     /// The time of `--for`.
     limit: Option<Duration>,
     /// True once the end was asked for.
-    is_over: &'a dyn Fn() -> bool,
+    is_over: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Wait<'_> {

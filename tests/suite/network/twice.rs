@@ -1,7 +1,7 @@
 //! A component runs once in a fleet.
 
 use super::nodes::{start, write_fleet};
-use super::programs::{Given, Programs, Transport};
+use super::programs::{Given, Programs, Transport, component, free_port, on_network};
 use super::{reader, receives_all, senders};
 
 const GIVEN: Given<'_> = &[("count", "10000"), ("each", "100")];
@@ -28,6 +28,37 @@ fn a_component_that_runs_in_another_program_is_refused_and_that_one_is_not_distu
         assert!(!programs.printed().contains("`second` is on the network"), "{}", programs.printed());
         programs.end_without(&broker, &["wrong:", "panicked", "are lost", "has begun anew"]);
     }
+}
+
+/// A program with two networks takes nobody's place on the one before it is accepted on the other.
+#[test]
+fn a_program_that_is_refused_on_one_of_its_networks_ends_nobody_on_another_one() {
+    let programs = Programs::new();
+    let broker = programs.broker();
+    let reader = reader(&programs, "reader", programs.port, &[("count", "10000")]);
+    let first = senders(&programs, programs.port, GIVEN);
+    let url = programs.url(programs.port);
+    let mut ports = std::iter::repeat_with(free_port);
+    let later = ports.find(|port| programs.url(*port) > url).unwrap();
+    let address = [("IP", "127.0.0.1"), ("transport", "relay"), ("port", &later.to_string())];
+    let there = [("count", "10000"), ("senders", "2")];
+    let there = on_network(&programs.url(later), &[], &[("There", "numbers.Reader", &there)]);
+    let there_too = programs.start("there", &component("Broker", "unibg.robotics.tca.MessageBrokerImpl", &address));
+    let other = programs.start("other", &there);
+    programs.until(&other, "has joined the network");
+    programs.until(&first, "Sender2        begins");
+    // It does not answer for a moment.
+    first.signal(libc::SIGSTOP);
+    let both = on_network(&url, &[], &[("Sender2", "numbers.Sender", GIVEN)]) + &there;
+    let second = programs.start("second", &both);
+    programs.until(&second, "`There` runs in program `other` still: waits for the end of that");
+    first.signal(libc::SIGCONT);
+    programs.ends(&second, 1);
+    receives_all(&programs, &reader, "10000");
+    programs.ends(&first, 0);
+    programs.stop(&other);
+    programs.stop(&there_too);
+    programs.end_without(&broker, &["wrong:", "panicked", "are lost", "has begun anew", "by now"]);
 }
 
 #[test]

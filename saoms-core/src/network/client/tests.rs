@@ -15,7 +15,7 @@ use saoms_api::host::{SharedMessage, cdr};
 use saoms_api::{Cause, Header, Level, Time};
 
 use super::unsent::MOST_BYTES;
-use super::{ALIVE, Client, FIRST_OF_TOPICS};
+use super::{ALIVE, Client, Entrance, FIRST_OF_TOPICS};
 use crate::network::control::{ControlRequest, Reply};
 use crate::network::exchange::wire::{Alive, Envelope, Reads, Received, Request, Vote};
 use crate::network::exchange::{Remembered, Settings};
@@ -258,7 +258,11 @@ fn program(url: &str) -> Program {
         wire: Arc::clone(&wire),
     };
     let membership = Membership { url: url.to_owned(), ..Membership::default() };
-    let client = Client::start(session, &port, member, membership, fleet).unwrap();
+    let mut entrance = Entrance::default();
+    entrance.add(session, &port, member, &membership, false, Instant::now()).unwrap();
+    let entered = entrance.into_all().pop().unwrap();
+    let mut client = Client::prepare(entered, membership, fleet).unwrap();
+    client.begin();
     Program { wire, port, has_started, told, lost, failed, panics, client }
 }
 
