@@ -194,7 +194,8 @@ pub struct Again {
     pub last: u64,
 }
 
-/// The answer to a request for messages of a state topic: those of them that are not outdated, which were sent.
+/// The answer to a request for messages: those of them that were sent. The others of a state topic are outdated, and
+/// those of an event topic are lost; where none is, nobody has to say so.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(name = "saoms_msgs/msg/Covered")]
 pub struct Covered {
@@ -206,7 +207,7 @@ pub struct Covered {
     pub first: u64,
     /// The number of the last message of this answer.
     pub last: u64,
-    /// Those that are not outdated, in order.
+    /// Those that were sent, in order.
     pub numbers: Vec<u64>,
 }
 
