@@ -193,8 +193,11 @@ impl Environment {
     fn listen(&mut self, context: &mut Context<'_>) {
         for (header, area) in context.receive(&self.area).with_headers() {
             if self.validator.accepts(area, header, None, context) {
-                // A world counts the luggage itself.
-                self.has_world = true;
+                // A world counts the luggage itself, also what was published before it was heard.
+                if !std::mem::replace(&mut self.has_world, true) {
+                    let counted = self.open.values().filter(|job| !job.is_visit).count();
+                    context.count("luggage.open", -i64::try_from(counted).unwrap_or_default());
+                }
                 self.map = area.clone().into();
             }
         }

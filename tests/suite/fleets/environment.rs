@@ -3,11 +3,15 @@
 use std::fs;
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Publisher};
-use saoms_components::grid::Block;
-use saoms_components::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, Fault, LuggageStage};
+use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue};
+use saoms_components::environment::Environment;
+use saoms_components::grid::{Block, Map};
+use saoms_components::hardware::Area;
+use saoms_components::messages::{
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, LuggageStage,
+};
 use saoms_core::report::{RunReport, RunStatus};
-use saoms_testkit::Fleet;
+use saoms_testkit::{Bench, Fleet};
 use serde_json::{Value, json};
 
 const HOUR: Duration = Duration::from_secs(3600);
@@ -214,4 +218,21 @@ fn luggage_that_no_master_hears_of_counts_as_not_delivered() {
     ));
     let run = fleet.run(1, Duration::from_secs(60));
     assert_eq!((run.count("luggage.requested"), run.count("scenario.luggage")), (3, 6), "{}", run.log());
+}
+
+/// As the program of the world does where it starts later than that of the environment.
+#[test]
+fn a_world_that_is_heard_late_counts_all_luggage_itself() {
+    let scenario = "at 0s 2 times luggage (1,1) to (2,1); at 0s visit (3,1); at 10s landing 4";
+    let mut environment = Bench::of::<Environment>(&[("scenario", scenario)]).unwrap();
+    environment.start().unwrap();
+    environment.execute().unwrap();
+    assert_eq!(environment.report("luggage.open"), Some(&ReportValue::Integer(2)), "there may be no world");
+    environment.deliver(&AREA, Area::from(&Map::new(5, 5)));
+    let delivered = EventLuggage::request(1, Block::new(1, 1), Block::new(2, 1));
+    let delivered = EventLuggage { stage: LuggageStage::Delivered, robot: 1, ..delivered };
+    environment.deliver(&EVENT_LUGGAGE, delivered);
+    environment.execute().unwrap();
+    let counts = ["luggage.open", "errands.open"].map(|count| environment.report(count).cloned());
+    assert_eq!(counts, [0, 1].map(|count| Some(ReportValue::Integer(count))));
 }

@@ -262,7 +262,8 @@ impl<F: Fleet> Member<F> {
         self.session.take()
     }
 
-    /// Lets the run end when no program has seen work left for so long that messages on their way have arrived.
+    /// Lets the run end when no program has seen work left for so long that messages on their way have arrived, and all
+    /// have that were lost on it.
     fn agree(&mut self, now: u64) {
         self.exchange.vote(self.fleet.vote());
         if let Some(unheard) = self.exchange.waits_for()
@@ -282,7 +283,8 @@ impl<F: Fleet> Member<F> {
         }
         let is_done = is_agreed && self.exchange.is_complete() && self.undelivered.is_empty();
         let since = self.done_since.filter(|_| is_done);
-        self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
+        let has_time = since.is_some_and(|since| now - since >= self.patience);
+        self.fleet.agree(has_time && self.exchange.has_received_all());
         self.done_since = is_done.then(|| since.unwrap_or(now));
     }
 

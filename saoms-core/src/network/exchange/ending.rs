@@ -48,6 +48,15 @@ impl Exchange {
         self.unheard.is_empty() && self.is_agreed()
     }
 
+    /// True if all events have arrived of which the programs that are there say that they sent them. A program says at
+    /// once that it sees no work left, and what it sent before may still be on its way.
+    pub fn has_received_all(&self) -> bool {
+        let there = self.peers.values().filter(|peer| peer.is_reachable && !peer.is_over);
+        let mut incoming = there.flat_map(|peer| &peer.incoming);
+        let is_event = |topic: &str| self.reads.get(topic).is_some_and(|own| !own.is_state);
+        incoming.all(|(topic, incoming)| incoming.missing().is_none() || !is_event(topic))
+    }
+
     fn is_agreed(&self) -> bool {
         // Who said that all is done, and vanished, has said so: its last sign of life may be lost.
         // One whose components run elsewhere by now is about to end.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::super::wire::{Alive, Begins, Reads, Vote};
 use super::super::{Action, Exchange, OwnMessage, Settings};
-use super::lossy::MILLISECOND;
+use super::lossy::{Lossy, MILLISECOND, Weather};
 
 fn program(others: &[&str]) -> Exchange {
     Exchange::new(Settings {
@@ -35,6 +35,30 @@ fn no_work_is_done_before_each_node_has_been_there() {
     assert_eq!(own.waits_for(), Some(&BTreeSet::from(["gate-b".to_owned()])));
     own.hear(&alive(3, "gate-b", Vote::Silent), 0);
     assert_eq!((own.is_done(), own.waits_for()), (true, None));
+}
+
+#[test]
+fn what_was_sent_before_a_program_saw_no_work_left_arrives_before_the_end() {
+    let mut network = Lossy::new(2, Weather::calm(), 1);
+    network.run(500 * MILLISECOND);
+    network.is_cut = true;
+    network.send(0, "EVENTS");
+    network.run(50 * MILLISECOND);
+    (0..2).for_each(|program| network.programs[program].exchange.vote(Vote::Done));
+    network.is_cut = false;
+    // The word that no work is left comes first, and what was lost before has to be asked for.
+    network.run(0);
+    let reader = &network.programs[1].exchange;
+    assert!(reader.is_done() && reader.is_complete() && !reader.has_received_all());
+    network.run(500 * MILLISECOND);
+    assert!(network.programs[1].exchange.has_received_all());
+    assert_eq!(network.delivered.len(), 1);
+    // Who is not there any more sends nothing again.
+    network.is_cut = true;
+    network.send(0, "EVENTS");
+    network.programs[0].is_stopped = true;
+    network.run(2_000 * MILLISECOND);
+    assert!(network.programs[1].exchange.has_received_all());
 }
 
 #[test]
