@@ -146,9 +146,13 @@ pub const FIRST_ELSEWHERE: u32 = 1 << 31;
 impl Header {
     /// True if the sender is a component of another program.
     pub const fn is_from_elsewhere(&self) -> bool {
-        // The greatest index is that of events from outside.
-        self.sender >= FIRST_ELSEWHERE && self.sender != u32::MAX
+        is_elsewhere(self.sender)
     }
+}
+
+/// True if the component of this index runs in another program. The greatest index is that of events from outside.
+const fn is_elsewhere(sender: u32) -> bool {
+    sender >= FIRST_ELSEWHERE && sender != u32::MAX
 }
 
 /// A message on its way: one value, shared by all its readers, encoded at most once and only where it leaves this build

@@ -1,6 +1,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use super::is_elsewhere;
 use crate::Message;
 
 /// Delivery guarantee of a topic.
@@ -166,4 +167,11 @@ pub struct KnownPublisher {
     pub has_begun: bool,
     /// Number by which it says who speaks in messages, where its class has one.
     pub number: Option<u32>,
+}
+
+impl KnownPublisher {
+    /// True if it runs in another program.
+    pub fn is_elsewhere(&self) -> bool {
+        is_elsewhere(self.sender)
+    }
 }

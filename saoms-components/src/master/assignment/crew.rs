@@ -303,7 +303,8 @@ impl Crew {
             LuggageStage::Release | LuggageStage::Refused => {
                 let left = self.left.entry((luggage, robot)).or_default();
                 *left = sent.max(*left);
-                false
+                // It may have taken it over from another robot since.
+                self.members.get(&robot).is_some_and(|member| member.job == Some(luggage) && member.took_at > sent)
             }
             LuggageStage::Delivered | LuggageStage::GivenUp => {
                 let of_luggage = self.left.range((luggage, 0)..=(luggage, u32::MAX)).map(|(key, _)| *key);
@@ -340,7 +341,7 @@ impl Crew {
     }
 
     /// Handles a call for help, or who follows it, about luggage of this master or of another one.
-    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation, is_own: bool) {
+    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation, sent: Time, is_own: bool) {
         let Some(job) = situation.job() else { return };
         let (robot, luggage) = match situation.stage {
             CriticalStage::Request => (situation.critical, None),
@@ -352,7 +353,15 @@ impl Crew {
                 true => (member.job, member.collected) = (luggage, true),
                 false => member.elsewhere = luggage,
             }
+            if is_own && luggage.is_some() {
+                // Whatever it was asked before, this is its answer.
+                (member.asked, member.withdrawn, member.handed_back, member.lapsed) = (None, None, 0, false);
+                member.took_at = sent.max(member.took_at);
+            }
             self.sort(robot);
+        }
+        if let Some(luggage) = luggage {
+            self.unanswered.retain(|(other, of, _)| (*other, *of) != (robot, luggage));
         }
     }
 

@@ -285,11 +285,18 @@ impl MasterEnvironmentKnowledge {
         }
     }
 
-    /// Handles a call for help, or who follows it.
-    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation) {
+    /// Handles a call for help, or who follows it. Of two robots that take the same job over, the later one gives it
+    /// back.
+    pub(in crate::master) fn hear_situation(&mut self, situation: &CriticalSituation, sent: Time) {
         let is_own = situation.job().is_none_or(|job| self.is_own(job.luggage));
-        self.open.hear_situation(situation);
-        self.crew.hear_situation(situation, is_own);
+        self.crew.hear_situation(situation, sent, is_own);
+        match situation.job().filter(|job| self.open.is_taken_over(job.luggage, situation)) {
+            Some(Job { luggage, from, to }) => {
+                self.open.contend(luggage, situation.healer);
+                self.assign(situation.healer, luggage, (from, to), true);
+            }
+            None => self.open.hear_situation(situation),
+        }
     }
 
     /// Hears of robots around the part, farther away the longer luggage waits.

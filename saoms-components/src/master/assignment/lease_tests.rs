@@ -11,13 +11,15 @@ use saoms_api::{Cause, Chance, Header, Time};
 use super::{AssignmentPolicy, MasterEnvironmentKnowledge};
 use crate::grid::Block;
 use crate::hardware::Action;
-use crate::messages::{Assignment, Lease, LuggageStage, RobotList};
+use crate::messages::{Assignment, CriticalKind, CriticalSituation, CriticalStage, Lease, LuggageStage, RobotList};
 use crate::robot::{Job, Leased};
 
 const LUGGAGE: u32 = 1;
 const FROM: Block = Block::new(3, 1);
 const TO: Block = Block::new(3, 9);
 const JOB: Job = Job { luggage: LUGGAGE, from: FROM, to: TO };
+/// The number of a robot that breaks with it.
+const BROKEN: u32 = 9;
 
 /// A robot, with what is on its way from it and to it.
 #[derive(Default)]
@@ -27,11 +29,32 @@ struct Robot {
     /// True if it has looked whether it may collect the luggage, and is about to begin.
     begins: bool,
     carries: bool,
-    said: VecDeque<LuggageStage>,
+    said: VecDeque<Said>,
     /// The newest message of a state topic is enough.
     leased: Option<Lease>,
     told: VecDeque<Assignment>,
-    requests: VecDeque<()>,
+    requests: VecDeque<Request>,
+}
+
+/// What a robot says of the piece.
+#[derive(Clone, Copy)]
+enum Said {
+    Stage(LuggageStage),
+    /// That it takes it over from the broken robot.
+    TakesOver,
+}
+
+/// How a robot that decides by itself hears of the piece.
+#[derive(Clone, Copy)]
+enum Request {
+    Luggage,
+    Help,
+}
+
+/// What the broken robot asks, or a robot with this number answers.
+fn situation(stage: CriticalStage, healer: u32) -> CriticalSituation {
+    let (critical, kind) = (BROKEN, CriticalKind::CarriesLuggage);
+    CriticalSituation { critical, kind, luggage: LUGGAGE, block: FROM, to: TO, stage, healer, ..Default::default() }
 }
 
 struct Run {
@@ -47,7 +70,7 @@ struct Run {
 }
 
 impl Run {
-    fn new(seed: u64, policy: AssignmentPolicy) -> Run {
+    fn new(seed: u64, policy: AssignmentPolicy, first: Option<Request>) -> Run {
         let mut master = MasterEnvironmentKnowledge::new(policy);
         master.open.add(LUGGAGE, FROM, TO, Time::START);
         let robots = 1..=3;
@@ -57,9 +80,11 @@ impl Run {
             master.hear_robot(&said, header);
         }
         let mut robots: Vec<Robot> = robots.map(|number| Robot { number, ..Robot::default() }).collect();
-        if policy == AssignmentPolicy::Robots {
-            robots.iter_mut().for_each(|robot| robot.requests.push_back(()));
+        if matches!(first, Some(Request::Help)) {
+            master.open.hear_response(&JOB.response(BROKEN, FROM, LuggageStage::Taken));
+            master.hear_situation(&situation(CriticalStage::Request, 0), Time::START);
         }
+        robots.iter_mut().for_each(|robot| robot.requests.extend(first));
         let (now, chance) = (Time::START, Chance::for_component(seed, "lease"));
         Run { chance, now, leases: 0, master, robots, policy, collected: None, delivered: false }
     }
@@ -77,9 +102,11 @@ impl Run {
             let most = self.robots[place].said.len();
             let count = if all { most } else { self.draw(most + 1) };
             for _ in 0..count {
-                let stage = self.robots[place].said.pop_front().unwrap();
-                let said = JOB.response(self.robots[place].number, FROM, stage);
-                self.master.hear_response(&said, now, now);
+                let number = self.robots[place].number;
+                match self.robots[place].said.pop_front().unwrap() {
+                    Said::Stage(stage) => self.master.hear_response(&JOB.response(number, FROM, stage), now, now),
+                    Said::TakesOver => self.master.hear_situation(&situation(CriticalStage::Taken, number), now),
+                }
             }
         }
         for place in 0..self.robots.len() {
@@ -118,7 +145,7 @@ impl Run {
 
     fn request(&mut self) {
         if self.policy == AssignmentPolicy::Robots {
-            self.robots.iter_mut().for_each(|robot| robot.requests.push_back(()));
+            self.robots.iter_mut().for_each(|robot| robot.requests.push_back(Request::Luggage));
         }
     }
 
@@ -142,15 +169,15 @@ impl Run {
                 };
                 if is_withdrawn && !robot.carries {
                     robot.lease = None;
-                    robot.said.push_back(LuggageStage::Release);
+                    robot.said.push_back(Said::Stage(LuggageStage::Release));
                 } else if told.lease == 0 && !told.withdrawn && robot.lease.is_none() {
-                    self.take(place);
+                    self.take(place, Request::Luggage);
                 }
             }
             4 if robot.lease.is_none() => {
                 // The robots decide by themselves, and have not heard of each other.
-                if robot.requests.pop_front().is_some() && !is_done {
-                    self.take(place);
+                if let Some(request) = robot.requests.pop_front().filter(|_| !is_done) {
+                    self.take(place, request);
                 }
             }
             5 | 6 if !robot.carries => {
@@ -165,12 +192,12 @@ impl Run {
             }
             8 if !robot.carries && tires => {
                 if robot.lease.take().is_some() {
-                    robot.said.push_back(LuggageStage::Release);
+                    robot.said.push_back(Said::Stage(LuggageStage::Release));
                 }
             }
             9 if robot.carries => {
                 (robot.carries, robot.lease, self.delivered) = (false, None, true);
-                robot.said.push_back(LuggageStage::Delivered);
+                robot.said.push_back(Said::Stage(LuggageStage::Delivered));
             }
             _ => {
                 let collect = Action::collect(LUGGAGE, FROM);
@@ -179,11 +206,14 @@ impl Run {
         }
     }
 
-    fn take(&mut self, place: usize) {
+    fn take(&mut self, place: usize, request: Request) {
         self.leases += 1;
         let robot = &mut self.robots[place];
         let lease = Leased::of(LUGGAGE, self.leases);
-        robot.said.push_back(LuggageStage::Taken);
+        robot.said.push_back(match request {
+            Request::Luggage => Said::Stage(LuggageStage::Taken),
+            Request::Help => Said::TakesOver,
+        });
         (robot.lease, robot.leased) = (Some(lease), Some(lease.say(robot.number)));
     }
 }
@@ -193,9 +223,9 @@ fn place(robot: u32) -> usize {
 }
 
 #[track_caller]
-fn no_piece_is_collected_twice(policy: AssignmentPolicy) {
+fn no_piece_is_collected_twice(policy: AssignmentPolicy, first: Option<Request>) {
     for seed in 0..1_500 {
-        let mut run = Run::new(seed, policy);
+        let mut run = Run::new(seed, policy, first);
         // One that stops now and then: the others go on.
         let mut stopped = 0;
         for _ in 0..300 {
@@ -221,10 +251,17 @@ fn no_piece_is_collected_twice(policy: AssignmentPolicy) {
 
 #[test]
 fn no_piece_that_a_master_assigns_is_collected_twice() {
-    no_piece_is_collected_twice(AssignmentPolicy::Oldest);
+    no_piece_is_collected_twice(AssignmentPolicy::Oldest, None);
 }
 
 #[test]
 fn no_piece_that_robots_take_by_themselves_is_collected_twice() {
-    no_piece_is_collected_twice(AssignmentPolicy::Robots);
+    no_piece_is_collected_twice(AssignmentPolicy::Robots, Some(Request::Luggage));
+}
+
+#[test]
+fn no_piece_that_robots_take_over_from_a_broken_one_is_collected_twice() {
+    for policy in [AssignmentPolicy::Robots, AssignmentPolicy::Oldest] {
+        no_piece_is_collected_twice(policy, Some(Request::Help));
+    }
 }

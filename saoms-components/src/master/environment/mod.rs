@@ -218,7 +218,7 @@ impl Component for MasterEnvironment {
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {
             let is_own = header.sender == context.sender();
             if !is_own && self.knowledge.accepts(situation, header, context) {
-                self.knowledge.hear_situation(situation);
+                self.knowledge.hear_situation(situation, header.sent);
             }
         }
         for (header, removal) in context.receive(&self.removals).with_headers() {

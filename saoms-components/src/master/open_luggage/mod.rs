@@ -330,6 +330,13 @@ impl OpenLuggage {
         is_new
     }
 
+    /// True if a healer says that it takes a job over which another one has taken over from the same robot.
+    pub(super) fn is_taken_over(&self, luggage: u32, said: &CriticalSituation) -> bool {
+        let bearer = self.pieces.get(&luggage).and_then(|piece| piece.taken);
+        let is_of_other = bearer.is_some_and(|bearer| bearer != said.healer && bearer != said.critical);
+        said.stage == CriticalStage::Taken && is_of_other
+    }
+
     /// Handles a request for help, or the response of a healer.
     pub(super) fn hear_situation(&mut self, situation: &CriticalSituation) {
         let Some(Job { luggage, from, .. }) = situation.job() else { return };
@@ -349,6 +356,7 @@ impl OpenLuggage {
                 if let Some(piece) = self.pieces.get_mut(&luggage) {
                     // For who takes it away from the healer, it lies where the broken robot left it.
                     (piece.from, piece.taken, piece.asked) = (from, Some(situation.healer), None);
+                    piece.waits = false;
                     // A robot that is out said so before.
                     piece.left_by = piece.taken.take_if(|healer| self.gone.is_out(*healer));
                     self.waiting.remove(&(piece.since, luggage));

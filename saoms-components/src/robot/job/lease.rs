@@ -5,11 +5,11 @@
 //! luggage is the robot's until it says itself what became of it, or a person does. No clock is needed for that: a
 //! robot whose program was stopped for any time between the answer and the collecting collects what is still its own.
 
-use saoms_api::{Context, Failure, Field, Header, Time};
+use saoms_api::{Context, Failure, Field, Header, KnownPublisher, Time};
 
 use super::Job;
 use crate::hardware::{Action, ActionKind};
-use crate::messages::{Assignment, Lease, is_visit};
+use crate::messages::{ASSIGNMENT, Assignment, Lease, is_visit};
 use crate::robot::RobotKnowledge;
 
 /// How often in a lease the robot says that it has it.
@@ -65,6 +65,13 @@ impl RobotKnowledge {
     pub(in crate::robot) fn lease(&mut self, luggage: u32, now: Time) {
         let is_leased = self.lists.requests.is_of_elsewhere(luggage) && !is_visit(luggage);
         self.lease = is_leased.then(|| Box::new(Leased::of(luggage, now.as_nanos())));
+    }
+
+    /// Has luggage on a lease that it takes over from a robot that cannot go on, if a master is in another program:
+    /// robots of several programs may do so at once, where they do not hear each other.
+    pub(in crate::robot) fn lease_taken_over(&mut self, luggage: u32, context: &Context<'_>) {
+        let is_leased = context.publishers(&ASSIGNMENT).iter().any(KnownPublisher::is_elsewhere) && !is_visit(luggage);
+        self.lease = is_leased.then(|| Box::new(Leased::of(luggage, context.now().as_nanos())));
     }
 
     /// Takes what a master answers about a lease. One that ends takes the luggage back.

@@ -345,6 +345,7 @@ impl SafeCriticalSituation {
             (knowledge.variables.busy, knowledge.variables.healer) = (true, true);
             knowledge.set_out(&job);
             let luggage = job.luggage;
+            knowledge.lease_taken_over(luggage, context);
             if critical == knowledge.number {
                 info!(context, "takes luggage {luggage} again, which it left at {}", job.from);
             } else {
