@@ -25,7 +25,7 @@ const WIRE: &str = r#"<reference name="world" target="World"/>"#;
 const CROSSWISE: &str = "at 1s luggage (1,0) to (7,0); at 1s luggage (6,0) to (0,0)";
 
 /// When the zone names the robots, in seconds.
-fn named(fleet: &Fleet, limit: u64) -> f64 {
+pub(super) fn named(fleet: &Fleet, limit: u64) -> f64 {
     let log = fleet.run(1, Duration::from_secs(limit)).log();
     let line = log.lines().find(|line| line.contains("are in each other's way, and cannot get past"));
     let line = line.unwrap_or_else(|| panic!("{log}"));

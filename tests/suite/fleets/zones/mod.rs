@@ -10,6 +10,7 @@ mod impostor;
 mod out_of_reach;
 mod phase;
 mod replicas;
+mod traps;
 mod unheard;
 mod words;
 
