@@ -32,6 +32,12 @@ pub trait RunInvariants: Send {
 
     /// What the run came to, after its end.
     fn measures(&self) -> Vec<Measure>;
+
+    /// How much was simulated, after the end of the run: hours of something, all in all, such as robot-hours. Divided
+    /// by the processor time, that is the performance of the simulation.
+    fn simulated(&self) -> Option<Measure> {
+        None
+    }
 }
 
 /// Ways in which a run ends.

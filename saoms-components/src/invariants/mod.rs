@@ -86,6 +86,8 @@ struct FleetInvariants {
     goes_on: bool,
     found: Vec<Violation>,
     measures: Vec<Measure>,
+    /// Hours of robots.
+    simulated: Option<Measure>,
 }
 
 #[derive(Default)]
@@ -268,6 +270,8 @@ impl RunInvariants for FleetInvariants {
         let requested = requested.max(usize::try_from(put_down).unwrap_or_default());
         let seconds = at.since(Time::START).as_secs_f64();
         let figure = |name, value| Measure { name, value, of: None };
+        let of_robots: f64 = self.sites.values().map(|site| site.robots.seconds(at)).sum();
+        self.simulated = (of_robots > 0.0).then(|| figure("robot-hours", of_robots / 3600.0));
         let (errands, done) = (counts("errands.requested"), counts("errands.finished"));
         self.measures = Vec::new();
         if requested > 0 || errands == 0 {
@@ -292,5 +296,9 @@ impl RunInvariants for FleetInvariants {
 
     fn measures(&self) -> Vec<Measure> {
         self.measures.clone()
+    }
+
+    fn simulated(&self) -> Option<Measure> {
+        self.simulated.clone()
     }
 }

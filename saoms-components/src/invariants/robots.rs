@@ -28,6 +28,8 @@ pub(super) struct Robots {
 
 #[derive(Debug, Default)]
 struct Robot {
+    /// When it was heard of first.
+    heard: Option<Time>,
     block: Option<Block>,
     moved: Time,
     /// In microseconds.
@@ -68,6 +70,12 @@ impl Robots {
         }
     }
 
+    /// The seconds from the first word of each robot to the end of the run, all in all.
+    pub(super) fn seconds(&self, end: Time) -> f64 {
+        let heard = self.all.values().filter_map(|robot| robot.heard);
+        heard.map(|heard| end.since(heard).as_secs_f64()).sum()
+    }
+
     /// The longest period of a robot, in microseconds.
     pub(super) fn longest_period(&self) -> u64 {
         self.all.values().map(|robot| robot.period).max().unwrap_or_default()
@@ -103,6 +111,7 @@ impl Robots {
     pub(super) fn hear_state(&mut self, message: &SharedMessage, is_kept: bool, finder: &mut Finder<'_>) {
         let Some(state) = message.get::<RobotList>() else { return };
         let robot = self.all.entry(state.robot).or_default();
+        robot.heard.get_or_insert(finder.at);
         robot.period = state.period;
         robot.began = state.began;
         robot.gone = robot.gone.filter(|gone| !robot.is_since(*gone));

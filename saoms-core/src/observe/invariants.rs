@@ -52,6 +52,11 @@ impl InvariantWatch {
     pub fn measures(&self) -> Vec<Measure> {
         self.all().iter().flat_map(|one| one.measures()).collect()
     }
+
+    /// How much was simulated, after the end of the run.
+    pub fn simulated(&self) -> Vec<Measure> {
+        self.all().iter().filter_map(|one| one.simulated()).collect()
+    }
 }
 
 impl Observer for InvariantWatch {

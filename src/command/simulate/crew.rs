@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use super::ending::{Shared, share, wait_for};
-use super::one::{SeedResult, Simulation};
+use super::one::{RunSeed, SeedResult, Simulation};
 use super::{Side, SimulateArguments};
 use crate::output::{eprint, has_failed, print_json_line};
 
@@ -48,7 +48,7 @@ impl Worker {
     }
 
     /// Runs a seed; `None` if the process does not answer any more.
-    fn run(&mut self, seed: u64) -> Option<SeedResult> {
+    fn run(&mut self, seed: u64) -> Option<RunSeed> {
         writeln!(self.seeds, "{seed}").ok()?;
         let mut line = String::new();
         self.results.read_line(&mut line).ok()?;
@@ -62,7 +62,7 @@ impl Worker {
     }
 }
 
-/// Runs all seeds of a fleet; their results in the order of the seeds.
+/// Runs all seeds of a fleet, and gives them in their order.
 ///
 /// # Errors
 /// No process can be started.
@@ -70,7 +70,7 @@ pub(super) fn run(
     arguments: &SimulateArguments,
     side: Side,
     seeds: RangeInclusive<u64>,
-) -> Result<Vec<SeedResult>, String> {
+) -> Result<Vec<RunSeed>, String> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let jobs = arguments.jobs.map_or(cores, usize::from).min(usize::try_from(arguments.seeds).unwrap_or(usize::MAX));
     let (next, results) = (AtomicU64::new(0), Mutex::new(Vec::new()));
@@ -87,15 +87,15 @@ pub(super) fn run(
                 return Ok(());
             }
             let seed = first.saturating_add(place);
-            let result = match worker.run(seed) {
-                Some(result) => result,
+            let run = match worker.run(seed) {
+                Some(run) => run,
                 None => {
                     let how = std::mem::replace(&mut worker, start()?).end();
-                    SeedResult::failed(seed, format!("the process that ran it ended: {how}"))
+                    SeedResult::failed(seed, format!("the process that ran it ended: {how}")).into()
                 }
             };
-            progress.note(&result);
-            results.lock().unwrap_or_else(PoisonError::into_inner).push(result);
+            progress.note(&run.result);
+            results.lock().unwrap_or_else(PoisonError::into_inner).push(run);
         }
     };
     thread::scope(|scope| {
@@ -106,7 +106,7 @@ pub(super) fn run(
     })?;
     progress.end();
     let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-    results.sort_unstable_by_key(|result| result.seed);
+    results.sort_unstable_by_key(|run| run.result.seed);
     Ok(results)
 }
 

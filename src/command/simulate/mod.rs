@@ -156,8 +156,8 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> Exit {
     let last = arguments.first + (arguments.seeds - 1);
     let tables = simulations.iter().zip([Side::One, Side::Other]).map(|((fleet, simulation), side)| {
         let began = Instant::now();
-        let results = crew::run(arguments, side, arguments.first..=last)?;
-        Ok(Table::of((arguments, fleet), results, began.elapsed(), simulation))
+        let runs = crew::run(arguments, side, arguments.first..=last)?;
+        Ok(Table::of((arguments, fleet), runs, began.elapsed(), simulation))
     });
     let tables = match tables.collect::<Result<Vec<Table>, String>>() {
         Ok(tables) => tables,

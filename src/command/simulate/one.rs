@@ -43,9 +43,27 @@ pub(super) struct SeedResult {
     /// How often each kind of fault was applied.
     pub(super) faults: BTreeMap<String, u64>,
     pub(super) measures: Vec<Figure>,
+    /// Hours of what was simulated.
+    #[serde(default)]
+    pub(super) simulated: Vec<Figure>,
     pub(super) violations: Vec<Found>,
     /// Number of violations beyond those that are listed.
     pub(super) more: usize,
+}
+
+/// A seed that was run, and what that took. Its result is the same each time, and the time is not.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct RunSeed {
+    pub(super) result: SeedResult,
+    /// Seconds of processor time of its run; of the first one, if it ran twice.
+    pub(super) cpu_s: f64,
+}
+
+impl From<SeedResult> for RunSeed {
+    /// A seed that took no time.
+    fn from(result: SeedResult) -> RunSeed {
+        RunSeed { result, cpu_s: 0.0 }
+    }
 }
 
 /// A figure of a run.
@@ -92,12 +110,14 @@ impl Simulation {
     }
 
     /// Runs a seed, some of them twice.
-    pub(super) fn run(&self, seed: u64) -> SeedResult {
+    pub(super) fn run(&self, seed: u64) -> RunSeed {
         let events = match self.events(seed) {
             Ok(events) => events,
-            Err(why) => return SeedResult::failed(seed, why),
+            Err(why) => return SeedResult::failed(seed, why).into(),
         };
+        let began = cpu_time();
         let mut result = self.run_with(seed, events.clone());
+        let cpu_s = cpu_time().saturating_sub(began).as_secs_f64();
         if seed.wrapping_sub(self.first).is_multiple_of(TWICE) {
             let again = self.run_with(seed, events).trace_hash;
             if again != result.trace_hash {
@@ -107,7 +127,7 @@ impl Simulation {
                 result.violations.push(Found { invariant: SAME_TRACE.to_owned(), at_s: 0.0, text });
             }
         }
-        result
+        RunSeed { result, cpu_s }
     }
 
     /// Runs a seed with these events once.
@@ -147,6 +167,7 @@ impl Simulation {
             |one: saoms_api::extension::Measure| Figure { name: one.name.to_owned(), value: one.value, of: one.of };
         let mut measures: Vec<Figure> = watch.measures().into_iter().map(figure).collect();
         measures.extend(report.adaptation.iter().flat_map(figures));
+        let simulated = watch.simulated().into_iter().map(figure).collect();
         SeedResult {
             seed,
             status: serde_json::to_value(report.outcome.status)
@@ -161,9 +182,20 @@ impl Simulation {
             trace_hash: report.trace_hash,
             faults,
             measures,
+            simulated,
             violations,
             more,
         }
+    }
+}
+
+/// The processor time of this process so far.
+fn cpu_time() -> Duration {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: `time` is a valid place for the one value that the call writes.
+    match unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &raw mut time) } {
+        0 => Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).unwrap_or(0)),
+        _ => Duration::ZERO,
     }
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::SimulateArguments;
-use super::one::{SAME_TRACE, SeedResult, Simulation};
+use super::one::{RunSeed, SAME_TRACE, SeedResult, Simulation};
 use super::shrink::shrunk;
 use crate::arguments::FleetArguments;
 
@@ -21,6 +21,8 @@ pub(super) struct Table {
     first: u64,
     results: Vec<SeedResult>,
     took: Duration,
+    /// Seconds of processor time of all runs.
+    cpu_s: f64,
     replays: Vec<Replay>,
 }
 
@@ -64,10 +66,12 @@ impl Table {
     /// The result of the runs of this fleet.
     pub(super) fn of(
         (arguments, fleet): (&SimulateArguments, &FleetArguments),
-        results: Vec<SeedResult>,
+        runs: Vec<RunSeed>,
         took: Duration,
         simulation: &Simulation,
     ) -> Table {
+        let cpu_s = runs.iter().map(|run| run.cpu_s).sum();
+        let results: Vec<SeedResult> = runs.into_iter().map(|run| run.result).collect();
         let failing = results.iter().filter(|result| !result.is_clean()).enumerate();
         let replays = failing.map(|(place, result)| {
             let faults = (place < MOST_SHRUNK).then(|| shrunk(simulation, result)).flatten();
@@ -75,7 +79,7 @@ impl Table {
             Replay { seed: result.seed, command: replay(arguments, fleet, result), faults }
         });
         let replays = replays.collect();
-        Table { first: arguments.first, results, took, replays }
+        Table { first: arguments.first, results, took, cpu_s, replays }
     }
 
     /// True if no run violated an invariant or failed.
@@ -142,6 +146,17 @@ impl Table {
         self.results.iter().map(|result| result.checks).sum()
     }
 
+    /// How many hours of what were simulated in an hour of processor time.
+    fn performance(&self) -> BTreeMap<&str, f64> {
+        let mut all: BTreeMap<&str, f64> = BTreeMap::new();
+        for one in self.results.iter().flat_map(|result| &result.simulated) {
+            *all.entry(one.name.as_str()).or_default() += one.value;
+        }
+        all.retain(|_, hours| *hours > 0.0 && self.cpu_s > 0.0);
+        all.values_mut().for_each(|hours| *hours /= self.cpu_s / 3600.0);
+        all
+    }
+
     pub(super) fn json(&self) -> Value {
         let figures = self.figures().into_iter().map(|(name, sum)| {
             let value = match sum.of {
@@ -157,6 +172,8 @@ impl Table {
             "first": self.first,
             "seeds": self.results.len(),
             "took_s": self.took.as_secs_f64(),
+            "cpu_s": self.cpu_s,
+            "performance": self.performance(),
             "simulated_s": self.simulated(),
             "periods": self.periods(),
             "checks": self.checks(),
@@ -227,6 +244,11 @@ impl Table {
         let hours = self.simulated() / 3600.0;
         let time = format!("{hours:.1} h simulated in {:.1} s, {} executions", self.took.as_secs_f64(), self.periods());
         row(formatter, "time", &time)?;
+        let performance = self.performance().into_iter().map(|(name, rate)| format!("{rate:.0} {name} per CPU-hour"));
+        let performance: Vec<String> = performance.collect();
+        if !performance.is_empty() {
+            row(formatter, "performance", &listed(performance))?;
+        }
         row(formatter, "checks", &format!("{} messages held to the invariants", self.checks()))?;
         let statuses = self.statuses().into_iter().map(|(status, count)| format!("{status} {count}"));
         row(formatter, "runs", &listed(statuses.collect()))

@@ -35,6 +35,9 @@ fn seeds_without_faults_keep_the_invariants() {
         assert!(told.contains(row), "{told}");
     }
     assert!(told.contains("pieces delivered           56 of 56 (100.0 %)\n"), "{told}");
+    let performance = told.lines().find_map(|line| line.strip_prefix("performance ")?.strip_suffix(" per CPU-hour"));
+    let rate = performance.and_then(|text| text.trim().strip_suffix(" robot-hours")?.parse::<u64>().ok());
+    assert!(rate.is_some_and(|rate| rate > 0), "{told}");
     assert!(progress.contains("4 of 4 seeds, 0 with violations\n"), "{progress}");
 }
 
@@ -55,6 +58,10 @@ fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
     let report: Value = serde_json::from_str(&told).unwrap();
     let ways = |value: &Value| value["delay"].as_u64().unwrap() > 100 && value["fail"] == 3;
     assert!(ways(&report["faults"]), "{told}");
+    // What the robots of each run were heard of, in an hour of processor time.
+    let hours: f64 = report["results"].as_array().unwrap().iter().map(robot_hours).sum();
+    let [rate, cpu] = [&report["performance"]["robot-hours"], &report["cpu_s"]].map(|one| one.as_f64().unwrap());
+    assert!(hours > 0.0 && (rate * cpu / 3600.0 - hours).abs() < 1e-6 * hours, "{hours}: {told}");
     let failing = report["failing"].as_array().unwrap();
     assert_eq!(failing.len(), 3, "{told}");
     let of_collisions = report["results"]
@@ -74,6 +81,13 @@ fn a_failing_seed_is_shown_again_and_its_faults_are_shrunk() {
     let (_, twice, _) = simulate_file(&folder, "peers.composite", &arguments);
     let twice: Value = serde_json::from_str(&twice).unwrap();
     assert_eq!(report["results"], twice["results"], "in other processes it is the same");
+}
+
+/// The hours of all robots in the result of a run.
+fn robot_hours(result: &Value) -> f64 {
+    let simulated = &result["simulated"][0];
+    assert_eq!(simulated["name"], "robot-hours", "{result}");
+    simulated["value"].as_f64().unwrap()
 }
 
 /// An airport in a storm: messages are lost, late and doubled, robots break down, masters die, a zone crashes, and
