@@ -116,10 +116,9 @@ impl History {
             kept.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&name);
             writer.has_state(&name, from_s)?;
             for source in self.sources.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
-                for table in source.tables.iter().enumerate() {
-                    for (time_s, row) in writer.earlier(table)? {
-                        source.history.goes_on(time_s, &row);
-                    }
+                let Source { tables, history, .. } = source;
+                for table in tables.iter().enumerate() {
+                    writer.each_earlier(table, |time_s, row| history.goes_on(time_s, row))?;
                 }
             }
             Ok(())

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 
 use rusqlite::Connection;
-use saoms_api::extension::HistoryValue;
+use saoms_api::extension::{HistoryColumn, HistoryKind, HistoryRow, HistoryTable, HistoryValue};
 use saoms_api::host::Registration;
 use saoms_api::{Class, Component, Context, Failure, Time, Work};
 use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent};
@@ -13,6 +13,7 @@ use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 
+use crate::writer::{Writer, earlier, open};
 use crate::{History, HistoryError, HistoryEvents, HistoryRun, Questions};
 
 /// What was told, in order.
@@ -207,6 +208,45 @@ fn a_history_has_a_name_for_good_and_says_what_stands_in_it() {
          component TEXT NOT NULL, -- its path, as `North/Gate`\n  id TEXT, -- its `ID`\n  \
          period_s REAL -- its period, in seconds\n, PRIMARY KEY (run, component)) STRICT, WITHOUT ROWID"
     );
+}
+
+#[test]
+fn rows_of_earlier_programs_come_one_by_one_as_they_were_written() {
+    const TABLES: &[HistoryTable] = &[HistoryTable {
+        name: "rings",
+        doc: "A ring of a bell",
+        columns: &[HistoryColumn { name: "bell", kind: HistoryKind::Text, doc: "the bell" }],
+    }];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("h.db");
+    let tables: Vec<&HistoryTable> = TABLES.iter().collect();
+    let begin = |state: &str, from_s: Option<f64>| {
+        let connection = open(&path, &tables).unwrap();
+        let mut writer = Writer::begin(connection, &tables, (&HistoryRun::default(), None), ("real", 1)).unwrap();
+        writer.has_state(state, from_s).unwrap();
+        writer
+    };
+    let write = |writer: &mut Writer, rings: &[(f64, &str)]| {
+        for (time_s, bell) in rings {
+            let row = HistoryRow { table: 0, values: vec![HistoryValue::from(*bell)] };
+            writer.rows(TABLES, *time_s, &[row]).unwrap();
+        }
+    };
+    // What a thread beside the others sent may have an earlier time than what was written before.
+    write(&mut begin("hall", None), &[(1.0, "a"), (3.0, "b"), (2.0, "c"), (3.0, "d"), (5.0, "undone")]);
+    write(&mut begin("other", None), &[(1.0, "of another fleet")]);
+    write(&mut begin("hall", Some(4.0)), &[(4.0, "e"), (4.0, "f")]);
+    let mut read = Vec::new();
+    let last = begin("hall", Some(6.0));
+    last.each_earlier((0, &TABLES[0]), |time_s, row| read.push((time_s, row.values[0].clone()))).unwrap();
+    let expected = [(1.0, "a"), (3.0, "b"), (2.0, "c"), (3.0, "d"), (4.0, "e"), (4.0, "f")];
+    assert_eq!(read, expected.map(|(time_s, bell)| (time_s, HistoryValue::from(bell))));
+    // Nothing is sorted, which would take as much memory or space as there are rows.
+    let connection = Connection::open(&path).unwrap();
+    let mut plan = connection.prepare(&format!("EXPLAIN QUERY PLAN {}", earlier(&TABLES[0]))).unwrap();
+    let steps = plan.query_map([1], |row| row.get::<_, String>(3)).unwrap();
+    let steps: Vec<String> = steps.map(Result::unwrap).collect();
+    assert!(steps[0] == "SCAN t" && !steps.iter().any(|step| step.contains("B-TREE")), "{steps:?}");
 }
 
 #[test]

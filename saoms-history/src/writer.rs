@@ -111,6 +111,18 @@ pub(crate) fn refused(path: &Path, error: &rusqlite::Error) -> HistoryError {
     HistoryError::Database { path: path.to_owned(), message: error.to_string() }
 }
 
+/// What asks for the rows that earlier runs with the same state wrote to a table. `CROSS JOIN` has SQLite walk through the
+/// table, in whose order the rows are wanted: it would sort all of them otherwise.
+pub(crate) fn earlier(table: &HistoryTable) -> String {
+    let columns: String = table.columns.iter().map(|column| format!(", t.{}", column.name)).collect();
+    format!(
+        "SELECT t.time_s{columns} FROM {} t CROSS JOIN runs r USING (run) CROSS JOIN runs own \
+         ON own.run = ? AND own.state = r.state \
+         WHERE r.run < own.run AND (r.undone_from_s IS NULL OR t.time_s < r.undone_from_s) ORDER BY t.rowid",
+        table.name
+    )
+}
+
 impl Writer {
     /// Begins a run, whose records are removed at an age.
     pub(crate) fn begin(
@@ -153,23 +165,21 @@ impl Writer {
         transaction.commit()
     }
 
-    /// The rows that earlier runs with the same state wrote of what this one goes on with, and their times.
-    pub(crate) fn earlier(
+    /// Gives the rows that earlier runs with the same state wrote of what this one goes on with, and their times, one
+    /// after the other in the order in which they were written: a history of years is not held in memory.
+    pub(crate) fn each_earlier(
         &self,
         (place, table): (usize, &HistoryTable),
-    ) -> Result<Vec<(f64, HistoryRow)>, rusqlite::Error> {
-        let columns: String = table.columns.iter().map(|column| format!(", t.{}", column.name)).collect();
-        let question = format!(
-            "SELECT t.time_s{columns} FROM {} t JOIN runs r USING (run) JOIN runs own ON own.run = ? AND own.state = r.state \
-             WHERE r.run < own.run AND (r.undone_from_s IS NULL OR t.time_s < r.undone_from_s) ORDER BY t.time_s",
-            table.name
-        );
-        let mut statement = self.connection.prepare(&question)?;
-        let row = |row: &rusqlite::Row<'_>| {
+        mut take: impl FnMut(f64, &HistoryRow),
+    ) -> Written {
+        let mut statement = self.connection.prepare(&earlier(table))?;
+        let mut rows = statement.query([self.run])?;
+        while let Some(row) = rows.next()? {
             let values = (1..=table.columns.len()).map(|column| row.get_ref(column).map(value));
-            Ok((row.get(0)?, HistoryRow { table: place, values: values.collect::<Result<_, _>>()? }))
-        };
-        statement.query_map([self.run], row)?.collect()
+            let time_s = row.get(0)?;
+            take(time_s, &HistoryRow { table: place, values: values.collect::<Result<_, _>>()? });
+        }
+        Ok(())
     }
 
     pub(crate) fn components<'a>(

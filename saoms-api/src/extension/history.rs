@@ -14,7 +14,8 @@ pub trait RunHistory: Send {
     fn message(&mut self, topic: &str, component: &str, message: &SharedMessage) -> Vec<HistoryRow>;
 
     /// Takes in a row that an earlier program wrote of what this one goes on with, with its time in seconds of the run:
-    /// before the first message, the rows of each table in the order of their times.
+    /// before the first message, the rows of each table in the order in which they were written. They are read one by
+    /// one, as many as there are: what is kept of them should not grow with what is over.
     fn goes_on(&mut self, time_s: f64, row: &HistoryRow) {
         let _ = (time_s, row);
     }
