@@ -46,6 +46,38 @@ fn check(fleet: &str, changes: &[(u64, &str)], limit: u64, expected: &str) {
 }
 
 #[test]
+fn components_that_are_removed_together_serve_each_other_until_their_own_end() {
+    check(
+        "A actor period=10 each=[number]
+         B actor period=10 peer=C last=[must-ask one; log gone]
+         C actor period=10 peer=D called=[must-ask two; log asked] last=[must-ask three; log gone]
+         D callee called=[log asked] last=[log gone]",
+        &[(22, "A actor period=10 each=[number]")],
+        35,
+        "+[] -[B C D] ~[]
+         [0.000 s] A: started
+         [0.000 s] B: started
+         [0.000 s] C: started
+         [0.000 s] D: started
+         [0.000 s] A: A 0 every 10ms
+         [0.010 s] A: A 1 every 10ms
+         [0.020 s] A: A 2 every 10ms
+         [0.022 s] D: asked
+         [0.022 s] C: asked
+         [0.022 s] B: gone
+         [0.022 s] B: has shut down
+         [0.022 s] D: asked
+         [0.022 s] C: gone
+         [0.022 s] C: has shut down
+         [0.022 s] D: gone
+         [0.022 s] D: has shut down
+         [0.030 s] A: A 3 every 10ms
+         [0.035 s] A: has shut down
+         Elapsed after 0.035 s",
+    );
+}
+
+#[test]
 fn components_join_end_and_are_replaced_and_the_others_go_on() {
     check(
         "A actor period=10 each=[number]

@@ -10,7 +10,7 @@ use super::transaction::Change;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
 use crate::schedule::component::library::with_library;
-use crate::schedule::engine::slot::{PendingRequest, SlotState};
+use crate::schedule::engine::slot::{NEVER, PendingRequest, SlotState};
 use crate::schedule::shared::Shared;
 
 /// Maximum time between two tries of what another component hinders.
@@ -128,16 +128,53 @@ impl Change<'_> {
         }
     }
 
-    /// Shuts down a component that the change has removed.
-    pub(super) fn shut_down(&self, number: u32, mut body: Box<Body>, now: u64) {
+    /// Shuts down the components that the change has removed, those that call others first. As at the end of a run, each
+    /// serves calls until its turn.
+    pub(super) fn shut_down_removed(&mut self, now: u64) {
+        let leaving = std::mem::take(&mut self.leaving);
+        let numbers: Vec<u32> = leaving.iter().map(|(number, _)| *number).collect();
         let mut engine = self.shared.lock();
-        let slot = &mut engine.slots[number as usize];
-        if slot.state != SlotState::Abandoned {
-            (slot.state, slot.pending) = (SlotState::Leaving, PendingRequest::None);
+        for (number, body) in leaving {
+            let slot = &mut engine.slots[number as usize];
+            if slot.state != SlotState::Abandoned {
+                // Its turn comes from here, and not from the queues.
+                (slot.state, slot.pending) = (SlotState::Leaving, PendingRequest::None);
+                (slot.entry, slot.waiting, slot.queued) = (NEVER, false, false);
+            }
+            engine.note_answer(number);
+            engine.put_back(number, body);
         }
+        engine.roles.work.retain(|number| !numbers.contains(number));
         self.shared.release(engine);
-        (body.part.now, body.part.due) = (now, now);
-        let ended = self.end(number, body);
+        for number in numbers {
+            self.shut_down(number, now);
+        }
+    }
+
+    /// Shuts down a component that the change has removed.
+    fn shut_down(&self, number: u32, now: u64) {
+        let deadline = Instant::now() + self.shared.settings.grace;
+        let mut engine = self.shared.lock();
+        let taken = loop {
+            if !engine.slots[number as usize].is_alive() {
+                // The run has begun to end, or its code has failed in a call.
+                engine.forget(number);
+                return self.shared.release(engine);
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            match engine.take(number) {
+                None if !left.is_zero() => engine = self.shared.wait_for_return(engine, left),
+                taken => break taken,
+            }
+        };
+        self.shared.release(engine);
+        let ended = match taken {
+            Some(mut body) => {
+                (body.part.now, body.part.due) = (now, now);
+                self.end(number, body)
+            }
+            None => Err(Failure::new("a call of its code has not returned")),
+        };
         let mut engine = self.shared.lock();
         match ended {
             Ok((mut body, result)) => {

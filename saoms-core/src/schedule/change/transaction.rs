@@ -39,7 +39,7 @@ pub(super) struct Change<'a> {
     /// Components that do not run and must not start meanwhile.
     held: Vec<u32>,
     /// Bodies of components that end.
-    leaving: Vec<(u32, Box<Body>)>,
+    pub(super) leaving: Vec<(u32, Box<Body>)>,
     /// What those keep that end or are replaced, for those that begin.
     estate: Estate,
     /// Components with new values.
@@ -470,9 +470,7 @@ impl<'a> Change<'a> {
             self.shared.release(engine);
         }
         drop_apart(self.shared, outgoing);
-        for (number, body) in std::mem::take(&mut self.leaving) {
-            self.shut_down(number, body, now);
-        }
+        self.shut_down_removed(now);
         Ok(changed)
     }
 }
