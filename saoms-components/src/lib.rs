@@ -17,6 +17,7 @@ pub mod manual;
 pub mod master;
 pub mod messages;
 mod paths;
+mod precedence;
 mod report;
 pub mod robot;
 mod rules;

@@ -335,7 +335,7 @@ export class FloorMap {
     pen.setLineDash([3, 3]);
     pen.beginPath();
     for (const conflict of floor.conflicts.values()) {
-      const [from, to] = [floor.robots.get(conflict.robot), floor.robots.get(conflict.winner)];
+      const [from, to] = [floor.robots.get(conflict.robot), floor.robots.get(conflict.other)];
       if (!from || !to) continue;
       pen.moveTo((from.drawn.x + 0.5) * cell, (from.drawn.y + 0.5) * cell);
       pen.lineTo((to.drawn.x + 0.5) * cell, (to.drawn.y + 0.5) * cell);

@@ -55,10 +55,10 @@ submit! {
             ("view.css", include_str!("view.css")),
         ],
         states: &[
-            state("Position", &["block", "next", "wanted", "priority"]),
+            state("Position", &["block", "next", "wanted"]),
             state("Area", &["width", "height", "blocked"]),
             state("Territory", &["zone", "corner", "width", "height"]),
-            state("Grant", &["robot", "steps", "waits_for", "wanted"]),
+            state("Grant", &["robot", "steps"]),
             state("RobotList", &["charger"]),
         ],
         plots: PLOTS,

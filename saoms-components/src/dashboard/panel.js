@@ -113,11 +113,20 @@ export function conflicts(floor, choose) {
     const { fleet } = floor;
     const all = [...floor.conflicts.values(), ...floor.past.filter((one) => !floor.conflicts.has(one.key))].slice(0, 60);
     none.hidden = all.length > 0;
-    const make = (one) => h("li", {}, h("p", {}, robot(one.winner), " goes first, ", robot(one.robot), " waits", one.block ? ` at ${place(one.block)}` : ""), h("p", { class: "muted" }, one.reason, h("span", {})));
+    const make = () => h("li", {}, h("p", {}), h("p", { class: "muted" }, h("span", {}), h("span", {})));
     keyed(list, all, (one) => one.key, make, (item, one) => {
       item.className = one.until === null ? "" : "past";
+      const [head, why] = item.children;
+      const block = place(one.block);
+      if (head.dataset.of !== `${one.winner} ${block}`) {
+        head.dataset.of = `${one.winner} ${block}`;
+        // One that waits for the other to give way goes first itself.
+        const waits = one.winner === one.robot ? [", and waits for ", robot(one.other), " to give way"] : [", ", robot(one.robot), " waits"];
+        head.replaceChildren(robot(one.winner), " goes first", ...waits, one.block ? ` at ${block}` : "");
+      }
+      text(why.firstChild, one.reason);
       const lasts = (one.until ?? fleet.state.time_s) - one.since;
-      text(item.lastChild.lastChild, one.since === null ? "" : ` · ${lasts.toFixed(1)} s${one.until === null ? "" : `, until ${time(one.until)}`}`);
+      text(why.lastChild, one.since === null ? "" : ` · ${lasts.toFixed(1)} s${one.until === null ? "" : `, until ${time(one.until)}`}`);
     });
   }
 

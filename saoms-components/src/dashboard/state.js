@@ -57,10 +57,13 @@ export class Floor {
     this.zones = this.#messages("Territory").map((one) => one.message);
     const robots = new Map();
     const luggage = [];
+    /** What zones say of robots that wait, by the numbers of both robots and the block. */
+    this.reasons = new Map();
     for (const one of this.fleet.components.values()) {
       // A robot that sleeps says nothing: it stays where it was.
       const values = one.state === "idle" && !("robot" in (one.values ?? {})) ? (this.said.get(one.name) ?? {}) : (one.values ?? {});
       if (Array.isArray(values.luggage)) luggage.push(...values.luggage);
+      if (Array.isArray(values.waits)) for (const wait of values.waits) this.reasons.set(`${wait.robot}/${wait.goes_first}/${place(at(wait.at))}`, wait.because);
       if (typeof values.robot !== "number" || !Array.isArray(values.block)) continue;
       const position = positions.get(one.name);
       if (hasSites && !position) continue;
@@ -84,10 +87,12 @@ export class Floor {
         block: position?.block ?? block,
         next: position?.next ?? block,
         wanted: position?.wanted ?? block,
-        priority: position?.priority ?? null,
         charger: chargers.get(one.name) ?? null,
         waitsFor: values.waits_for_robot,
         since: values.waits_since_s,
+        waitsAt: at(values.waits_at),
+        goesFirst: values.goes_first,
+        because: values.because,
         // Where it is drawn: it glides to its block.
         drawn: known?.drawn ?? { ...(position?.block ?? block) },
       });
@@ -139,15 +144,16 @@ export class Floor {
     });
   }
 
-  /** Robots that wait for another one, with who goes first, and why. */
+  /** Robots that wait for another one, with who goes first, and why: what they say, or the zone that decides. */
   #conflicts() {
     const now = new Map();
     for (const robot of this.robots.values()) {
-      const winner = this.byNumber.get(robot.waitsFor);
-      if (!winner || robot.isOff) continue;
-      const key = `${robot.path}/${winner.path}/${robot.since}`;
-      const block = this.#contested(robot);
-      now.set(key, this.conflicts.get(key) ?? { key, robot: robot.path, winner: winner.path, block, since: robot.since, reason: this.#reason(robot, winner, block), until: null });
+      const other = this.byNumber.get(robot.waitsFor);
+      if (!other || robot.isOff) continue;
+      const key = `${robot.path}/${other.path}/${robot.since}`;
+      const winner = this.byNumber.get(robot.goesFirst) ?? other;
+      const reason = this.reasons.get(`${robot.number}/${winner.number}/${place(robot.waitsAt)}`) ?? robot.because ?? "";
+      now.set(key, { key, robot: robot.path, other: other.path, winner: winner.path, block: robot.waitsAt, since: robot.since, reason, until: null });
     }
     for (const [key, one] of this.conflicts) {
       if (now.has(key)) continue;
@@ -155,27 +161,5 @@ export class Floor {
       this.past.length = Math.min(this.past.length, KEPT);
     }
     this.conflicts = now;
-  }
-
-  /** The block where a robot waits to go. */
-  #contested(robot) {
-    const grant = this.#messages("Grant").find(({ message }) => message.robot === robot.number && message.waits_for !== 0);
-    if (grant) return grant.message.wanted;
-    return same(robot.wanted, robot.next) ? null : robot.wanted;
-  }
-
-  #reason(robot, winner, block) {
-    if (block) {
-      if (same(winner.block, block)) return `it is on ${place(block)}`;
-      if (same(winner.next, block)) return `it moves to ${place(block)}`;
-      if ((this.grants.get(winner.number) ?? []).some((step) => same(step, block))) return `the zone granted it ${place(block)}`;
-    }
-    if (robot.priority && winner.priority) {
-      const [own, other] = [BigInt(robot.priority.rank), BigInt(winner.priority.rank)];
-      if (other === 2n ** 64n - 1n) return "it never makes way: it handles luggage, has to charge, or cannot move";
-      if (other > own) return "it has the higher priority";
-      if (other === own) return "equal priority: the lower number goes first";
-    }
-    return block ? `it holds or wants ${place(block)}` : "it is in the way";
   }
 }

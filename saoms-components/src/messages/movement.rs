@@ -29,7 +29,20 @@ pub struct Priority {
 /// way.
 const WORK: u64 = 2 << 56;
 
+/// The same of a way to a charger.
+const CHARGER: u64 = 3 << 56;
+
 impl Priority {
+    /// The purpose of the way, the more urgent the higher.
+    pub(crate) fn purpose(self) -> u64 {
+        self.rank >> 56
+    }
+
+    /// True if the robot has to reach a charger in time.
+    pub(crate) fn is_for_charger(self) -> bool {
+        self.rank >= CHARGER
+    }
+
     /// True if the robot is on its way with a job, or to a charger that it has to reach in time; false if it is free.
     pub fn is_for_work(&self) -> bool {
         self.rank >= WORK

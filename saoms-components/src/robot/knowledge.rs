@@ -5,6 +5,7 @@ use saoms_api::{Cause, Entries, Extras, Field, Knowledge, Publisher, Time};
 use crate::grid::Block;
 use crate::hardware::Action;
 use crate::messages::{Collision, Lease, LuggageStage};
+use crate::precedence::Conflict;
 use crate::validation::MessageValidator;
 
 use super::actions::Outcome;
@@ -37,8 +38,8 @@ pub struct RobotKnowledge {
     pub(super) elapsed: Duration,
     /// What it did so far, for the report.
     pub(super) tally: Tally,
-    /// Number of the robot that it lets go first, and since when it waits for that.
-    pub(super) yields_to: Option<(u32, Time)>,
+    /// The robot for which it waits, and which of both goes first.
+    pub(super) conflict: Option<Conflict>,
     /// Position of the robot.
     #[entry]
     pub block: Block,
@@ -194,7 +195,7 @@ impl RobotKnowledge {
             executed_at: None,
             elapsed: Duration::ZERO,
             tally: Tally::default(),
-            yields_to: None,
+            conflict: None,
             block: charge_block,
             next: charge_block,
             wanted: None,
@@ -255,10 +256,11 @@ impl RobotKnowledge {
         }
     }
 
-    /// Notes which robot it lets go first in this execution.
-    pub(super) fn yield_to(&mut self, robot: Option<u32>, now: Time) {
-        let before = self.yields_to.filter(|(before, _)| robot == Some(*before));
-        self.yields_to = before.or_else(|| robot.map(|robot| (robot, now)));
+    /// Notes for which robot it waits in this execution. It waits since it began to wait for that one.
+    pub(super) fn note_conflict(&mut self, conflict: Option<Conflict>) {
+        let before = self.conflict.filter(|before| conflict.is_some_and(|now| now.waits_for == before.waits_for));
+        let since = before.map(|before| before.since);
+        self.conflict = conflict.map(|now| Conflict { since: since.unwrap_or(now.since), ..now });
     }
 
     /// True if it is at its charger.

@@ -47,15 +47,18 @@ impl RobotKnowledge {
         let job = self.job.as_ref().map_or(ReportValue::Null, |job| {
             format!("{} from {} to {}", job_name(job.luggage), job.from, job.to).into()
         });
-        let waits = self.yields_to;
+        let waits = self.conflict.as_ref();
         ReportValue::named([
             ("robot", ReportValue::from(self.number)),
             ("state", self.state().into()),
             ("block", block(self.block)),
             ("battery", self.battery.percent().into()),
             ("job", job),
-            ("waits_for_robot", waits.map_or(ReportValue::Null, |(robot, _)| robot.into())),
-            ("waits_since_s", waits.map_or(ReportValue::Null, |(_, since)| since.as_secs_f64().into())),
+            ("waits_for_robot", waits.map_or(ReportValue::Null, |conflict| conflict.waits_for.into())),
+            ("waits_since_s", waits.map_or(ReportValue::Null, |conflict| conflict.since.as_secs_f64().into())),
+            ("waits_at", waits.map_or(ReportValue::Null, |conflict| block(conflict.block))),
+            ("goes_first", waits.map_or(ReportValue::Null, |conflict| conflict.first.into())),
+            ("because", waits.map_or(ReportValue::Null, |conflict| conflict.why().into())),
             ("delivered", i64::try_from(self.tally.delivered).unwrap_or(i64::MAX).into()),
         ])
     }

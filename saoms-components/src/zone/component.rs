@@ -17,7 +17,7 @@ use super::memory::Record;
 use super::plan::Planned;
 use super::properties::ZoneProperties;
 use super::spoken::{Spoken, longest_move, newest};
-use super::{memory, plan};
+use super::{memory, plan, status};
 use crate::grid::{Block, Map};
 use crate::hardware::HardwareReference;
 use crate::messages::{
@@ -131,14 +131,7 @@ impl Component for Zone {
     }
 
     fn status(&self) -> Vec<(String, ReportValue)> {
-        let count = |number: usize| ReportValue::from(i64::try_from(number).unwrap_or(i64::MAX));
-        let members = || self.state.iter().flat_map(|state| state.ledger.members().values());
-        ReportValue::named([
-            ("robots", count(members().filter(|member| !member.steps.is_empty()).count())),
-            ("held", count(members().map(|member| member.steps.len()).sum())),
-            ("waiting", count(members().filter(|member| member.waited > 0).count())),
-            ("open", self.open.into()),
-        ])
+        status::status(self.state.as_ref().map(|state| &state.ledger), self.open)
     }
 
     fn waits_for(&self) -> Option<String> {

@@ -2,6 +2,7 @@ use std::collections::BTreeMap;
 
 use crate::grid::Block;
 use crate::messages::{Grant, GrantRequest, LAST_NUMBER, Standing, Step, Territory, address, link};
+use crate::precedence::Precedence;
 
 /// A zone's record of grants: which robot holds which of its blocks.
 ///
@@ -35,13 +36,15 @@ pub(crate) struct Member {
     pub(crate) silent: u32,
     /// The block that it wants next, and the robot that holds it, while it waits for that.
     pub(crate) in_the_way: Option<(Block, u32)>,
+    /// Why that robot goes first.
+    pub(crate) rule: Precedence,
     /// A block of another zone to which it has to make way, and the rank of the robot for which it does.
     pub(crate) aside: Option<(Block, u64)>,
 }
 
 impl Member {
     pub(crate) fn new(request: GrantRequest, steps: Vec<Step>, granted: u64) -> Member {
-        Member { request, steps, granted, waited: 0, silent: 0, in_the_way: None, aside: None }
+        Member { request, steps, granted, waited: 0, silent: 0, in_the_way: None, rule: Precedence::There, aside: None }
     }
 
     /// End of the robot's passage: the newest step that the robot has not heard of yet, else where the robot says that
@@ -184,6 +187,17 @@ impl Ledger {
     /// The robot that holds a block of the territory.
     pub(crate) fn holder(&self, block: Block) -> Option<u32> {
         self.place(block).map(|place| self.holders[place]).filter(|robot| *robot != 0)
+    }
+
+    /// Why the holder of a block goes before others that want it.
+    pub(crate) fn rule_of_holder(&self, holder: u32, block: Block) -> Precedence {
+        let Some(Member { request, .. }) = self.members.get(&holder) else { return Precedence::Granted };
+        match request.standing {
+            _ if request.block != block => Precedence::Granted,
+            Standing::Lost => Precedence::Lost,
+            Standing::Stays => Precedence::Stays,
+            Standing::MakesWay | Standing::Enters => Precedence::There,
+        }
     }
 
     /// The robots that stand on blocks of other zones close to this one, or go there, with these blocks.

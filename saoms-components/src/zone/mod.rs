@@ -18,6 +18,7 @@ mod passage;
 mod plan;
 mod properties;
 mod spoken;
+mod status;
 mod territories;
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ use super::ledger::{Ledger, Member};
 use super::maneuver::Maneuver;
 use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::Standing;
+use crate::precedence::Precedence;
 
 /// Maximum number of robots that are moved away for one.
 const LINE: u32 = 64;
@@ -190,10 +191,12 @@ impl Round<'_> {
                 self.granted.insert(robot);
             }
             let in_the_way = holder.map(|holder| (block, holder));
-            if let Some(member) = self.ledger.member_mut(robot)
-                && std::mem::replace(&mut member.in_the_way, in_the_way) != in_the_way
-            {
-                waiting.insert(robot);
+            let rule = holder.map_or(Precedence::There, |holder| self.ledger.rule_of_holder(holder, block));
+            if let Some(member) = self.ledger.member_mut(robot) {
+                member.rule = rule;
+                if std::mem::replace(&mut member.in_the_way, in_the_way) != in_the_way {
+                    waiting.insert(robot);
+                }
             }
         }
         waiting
@@ -374,7 +377,13 @@ impl Round<'_> {
             None if waits => self.comes_out(robot, end, goal),
             None => None,
         };
+        let rule = match in_the_way {
+            Some((block, holder)) if best.is_some() => self.ledger.rule_of_holder(holder, block),
+            _ => Precedence::ComesOut,
+        };
         let Some(member) = self.ledger.member_mut(robot) else { return false };
+        // What robots hear does not have it.
+        member.rule = rule;
         std::mem::replace(&mut member.in_the_way, in_the_way) != in_the_way
     }
 

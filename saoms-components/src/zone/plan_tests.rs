@@ -12,6 +12,7 @@ use super::plan::plan;
 use super::territories::Territories;
 use crate::grid::{Block, Map};
 use crate::messages::{GrantRequest, Standing, Step, Territory, link};
+use crate::precedence::Precedence;
 
 const fn at(x: i32, y: i32) -> Block {
     Block::new(x, y)
@@ -256,6 +257,34 @@ fn robots_of_other_zones_do_not_count_as_waiting_here_and_hear_who_is_in_the_way
     site.hold(2, &[at(1, 0)], at(1, 0), 9);
     site.round();
     assert_eq!(site.member(2).waited, 0);
+}
+
+#[test]
+fn a_zone_knows_why_the_robot_that_is_waited_for_goes_first() {
+    let why = |map: &str, robots: &[(u32, &[Block], Block)], stays: &[u32]| {
+        let mut site = Site::new(map, 3);
+        for (robot, blocks, goal) in robots {
+            site.hold(*robot, blocks, *goal, 10 - u64::from(*robot));
+        }
+        for robot in stays {
+            site.ledger.member_mut(*robot).unwrap().request.standing = Standing::Stays;
+        }
+        site.round();
+        let member = site.member(1);
+        (member.in_the_way, member.rule)
+    };
+    let floor = "...\n...";
+    let waits: (u32, &[Block], Block) = (1, &[at(0, 0)], at(2, 0));
+    let there: (u32, &[Block], Block) = (2, &[at(1, 0)], at(1, 0));
+    assert_eq!(why(floor, &[waits, there], &[]), (Some((at(1, 0), 2)), Precedence::There));
+    assert_eq!(why(floor, &[waits, there], &[2]), (Some((at(1, 0), 2)), Precedence::Stays));
+    let comes = (2, &[at(1, 1), at(1, 0)][..], at(1, 0));
+    assert_eq!(why(floor, &[waits, comes], &[]), (Some((at(1, 0), 2)), Precedence::Granted));
+    let into: (u32, &[Block], Block) = (1, &[at(0, 2)], at(1, 0));
+    let out_of: (u32, &[Block], Block) = (2, &[at(1, 1)], at(2, 3));
+    let stands: (u32, &[Block], Block) = (3, &[at(1, 2)], at(1, 2));
+    let dead_end = why("@.@\n@.@\n...\n...", &[into, out_of, stands], &[3]);
+    assert_eq!(dead_end, (Some((at(1, 1), 2)), Precedence::ComesOut));
 }
 
 #[test]

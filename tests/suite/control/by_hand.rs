@@ -61,7 +61,9 @@ fn every_message_of_the_manual_is_sent_by_hand() {
         "priority": {"rank": 0, "robot": 70}});
     publish(&running, "POSTOPIC", &position);
     running.told(&["send", "luggage (6,6) to (8,8)"]);
-    running.until("Robot1", |robot| robot["values"]["waits_for_robot"] == 70);
+    let robot = running.until("Robot1", |robot| robot["values"]["waits_for_robot"] == 70);
+    let told = ["waits_at", "goes_first", "because"].map(|name| robot["values"][name].clone());
+    assert_eq!(told, [json!([6, 6]), json!(70), json!("it is there")]);
     let aside = json!({"robot": 70, "block": block(6, 7), "next": block(6, 7), "wanted": block(6, 7),
         "priority": {"rank": 0, "robot": 70}});
     publish(&running, "POSTOPIC", &aside);

@@ -257,7 +257,7 @@ fn it_fits_a_phone_and_follows_the_colours_of_the_system() {
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
-/// Robots that meet, in two zones: who waits for whom is what the fleet says, and is grants, borders and reasons.
+/// Robots that meet, with a zone and without one: who waits for whom, and why, is what robots and the zone say.
 #[test]
 fn conflicts_and_zones_of_an_airport_are_shown() {
     let Some(mut browser) = Browser::start("dashboard-conflicts") else { return };
@@ -266,19 +266,52 @@ fn conflicts_and_zones_of_an_airport_are_shown() {
     let work = "from 1s every 200ms 5000 times luggage (0,0)..(10,10) to (0,0)..(10,10)";
     let busy =
         [before, "<property name=\"scenario\">", work, "</property>", after.split_once("</property>").unwrap().1];
-    let shown = shown(&busy.concat(), &[]);
-    shown.log_in(&mut browser, &shown.tokens[0]);
-    let items = "[...document.querySelectorAll('ol.conflicts li')].map((one) => one.textContent)";
-    browser.until(&format!(
-        "{items}.some((one) => / goes first, .* waits at \\(\\d+,\\d+\\).*(zone|priority|there)/.test(one))"
-    ));
-    // The page and the fleet agree while time stands.
-    shown.running.told(&["pause"]);
-    let waits = |robot: &Value| robot["values"]["waits_for_robot"].as_u64().is_some();
-    let status: Value = serde_json::from_str(&shown.running.told(&["status", "--format", "json"])).unwrap();
-    let waiting = status["status"]["components"].as_array().unwrap().iter().filter(|one| waits(one)).count();
-    browser.until(&format!("document.querySelectorAll('ol.conflicts li:not(.past)').length === {waiting}"));
+    let busy = busy.concat();
+    let (before, zone) = busy.split_once("<component name=\"Zone\">").unwrap();
+    let without_zone = format!("{before}{}", zone.split_once("</component>").unwrap().1);
+    for (fleet, has_zone) in [(busy.as_str(), true), (without_zone.as_str(), false)] {
+        let shown = shown(fleet, &[]);
+        shown.log_in(&mut browser, &shown.tokens[0]);
+        browser.until("document.querySelectorAll('ol.conflicts li').length > 0");
+        // The page and the fleet agree while time stands: who waits, and why.
+        let mut conflicts = Vec::new();
+        while conflicts.iter().all(|(_, by_zone)| *by_zone != has_zone) {
+            shown.running.told(&["resume"]);
+            shown.running.told(&["pause"]);
+            let status: Value = serde_json::from_str(&shown.running.told(&["status", "--format", "json"])).unwrap();
+            conflicts = told(status["status"]["components"].as_array().unwrap());
+        }
+        let count = conflicts.len();
+        browser.until(&format!("document.querySelectorAll('ol.conflicts li:not(.past)').length === {count}"));
+        for (line, _) in &conflicts {
+            let items = "[...document.querySelectorAll('ol.conflicts li:not(.past)')].map((one) => one.textContent)";
+            browser.until(&format!("{items}.some((one) => one.startsWith({}))", json!(line)));
+        }
+    }
     assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+/// The conflicts that robots tell, as the page shows them, with the words of the zone where it has some; and whether
+/// they are its words.
+fn told(components: &[Value]) -> Vec<(String, bool)> {
+    let zones = || components.iter().filter_map(|one| one["values"]["waits"].as_array()).flatten();
+    let conflict = |robot: &Value| {
+        let values = &robot["values"];
+        let (other, first) = (values["waits_for_robot"].as_u64()?, values["goes_first"].as_u64().unwrap());
+        let is_it = |wait: &&Value| {
+            wait["robot"] == values["robot"] && wait["goes_first"] == first && wait["at"] == values["waits_at"]
+        };
+        let by_zone = zones().find(is_it);
+        let because = by_zone.unwrap_or(values)["because"].as_str().unwrap();
+        let (name, at) = (robot["name"].as_str().unwrap(), &values["waits_at"]);
+        let other = format!("Robot{other:03}");
+        let who = match values["robot"] == first {
+            true => format!("{name} goes first, and waits for {other} to give way"),
+            false => format!("{other} goes first, {name} waits"),
+        };
+        Some((format!("{who} at ({},{}){because}", at[0], at[1]), by_zone.is_some()))
+    };
+    components.iter().filter_map(conflict).collect()
 }
 
 /// A fleet whose names all have markup: its own, that of a site, of a zone, of a topic and of a robot.

@@ -1,6 +1,7 @@
 use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, info, record};
 
 use crate::grid::Block;
+use crate::precedence::{Conflict, Precedence};
 use crate::robot::RobotKnowledge;
 
 /// Stops for a period if another robot announced the same next block and has the lower number (listing 6.11).
@@ -112,11 +113,13 @@ impl Loop for ClassicCollision {
             context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
         }
         knowledge.variables.stop_a_period = matches!(decision, ClassicCollisionDecision::Stop { .. });
-        let first = match decision {
-            ClassicCollisionDecision::Stop { robot, .. } => Some(robot),
+        let since = context.now();
+        knowledge.note_conflict(match decision {
+            ClassicCollisionDecision::Stop { robot, block } => {
+                Some(Conflict { block, waits_for: robot, first: robot, rule: Precedence::Number, lent_by: 0, since })
+            }
             ClassicCollisionDecision::GoOn | ClassicCollisionDecision::GoOnAgain => None,
-        };
-        knowledge.yield_to(first, context.now());
+        });
         if let ClassicCollisionDecision::Stop { robot, block } = decision {
             info!(context, "waits: robot {robot} enters {block} first");
         }

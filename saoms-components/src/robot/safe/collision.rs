@@ -1,6 +1,7 @@
-use saoms_api::{Context, Failure, Field, Loop, LoopClass, Record, Recordable, Saved, record};
+use saoms_api::{Context, Failure, Field, Loop, LoopClass, Record, Recordable, Saved, Time, record};
 
 use crate::grid::Block;
+use crate::precedence::{Conflict, Precedence};
 use crate::robot::RobotKnowledge;
 use crate::robot::memory::lasting::lasting;
 use crate::robot::zone_client::InTheWay;
@@ -85,12 +86,13 @@ impl Loop for SafeCollision {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<SafeCollisionSymptom>, Failure> {
-        let RobotKnowledge { traffic, next, zones, .. } = knowledge;
+        let RobotKnowledge { traffic, next, zones, .. } = &*knowledge;
         let taken = match zones {
             Some(zones) => zones.in_the_way().map(|InTheWay { block, robot }| Wait { block, robot }),
             None => traffic.wanted(*next).and_then(|block| Some(Wait { block, robot: traffic.in_the_way(block)? })),
         };
-        knowledge.yield_to(taken.map(|wait| wait.robot), context.now());
+        let conflict = taken.map(|wait| knowledge.conflict_about(wait, context.now()));
+        knowledge.note_conflict(conflict);
         if taken == self.waits {
             return Ok(None);
         }
@@ -137,5 +139,19 @@ impl Loop for SafeCollision {
 
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         self.go_on(saved)
+    }
+}
+
+impl RobotKnowledge {
+    /// Which robot goes first of this one and the one that it waits for, and why: by the rules of `Traffic`, or by those
+    /// of the zone, which says why itself.
+    fn conflict_about(&self, Wait { block, robot }: Wait, since: Time) -> Conflict {
+        let (first, rule, lent_by) = if self.zones.is_some() {
+            (robot, Precedence::Zone, 0)
+        } else {
+            let own = self.traffic.inherited(self.leg.priority(self.number), self.next);
+            self.traffic.precedence((block, robot), (self.number, self.next, own), &self.routes)
+        };
+        Conflict { block, waits_for: robot, first, rule, lent_by, since }
     }
 }

@@ -16,6 +16,7 @@ use saoms_api::{Chance, Field};
 
 use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::{IMMOVABLE, Position, Priority};
+use crate::precedence::Precedence;
 use crate::robot::{Peers, Routes};
 
 use super::dead_end::{Leaving, way_out};
@@ -157,6 +158,38 @@ impl Traffic {
     /// Another robot that holds or wants the block.
     pub(super) fn in_the_way(&self, block: Block) -> Option<u32> {
         self.near.iter().find(|peer| peer.holds(block) || peer.wanted == block).map(|peer| peer.robot)
+    }
+
+    /// Which of two robots goes first, and by which rule: the one that is in the way of a block, or that of this number
+    /// and priority, which is at a block and waits. The last number is that of a third robot for which the first one
+    /// makes way, if it goes first because of that; else 0.
+    pub(super) fn precedence(
+        &self,
+        (block, other): (Block, u32),
+        (robot, at, own): (u32, Block, Priority),
+        routes: &Routes,
+    ) -> (u32, Precedence, u32) {
+        let Some(peer) = self.near.iter().find(|peer| peer.robot == other) else {
+            return (other, Precedence::There, 0);
+        };
+        if peer.block == block {
+            let stays = peer.priority == IMMOVABLE;
+            return (other, if stays { Precedence::Stays } else { Precedence::There }, 0);
+        }
+        if peer.next == block {
+            return (other, Precedence::Moves, 0);
+        }
+        // Both want it: `availability` decides.
+        let comes_out = |from: Block| way_out(from, routes) == Some(block);
+        let [own, theirs] = [(comes_out(at), own, robot), (comes_out(peer.next), peer.priority, other)];
+        let right = |(comes_out, priority, robot)| right_of_way(comes_out, priority, robot);
+        let (first, second) = if right(theirs) > right(own) { (theirs, own) } else { (own, theirs) };
+        if first.0 != second.0 {
+            return (first.2, Precedence::ComesOut, 0);
+        }
+        let rule = Precedence::of_priorities(first.1, second.1);
+        let is_lent = rule != Precedence::Number && first.1.robot != first.2;
+        (first.2, rule, if is_lent { first.1.robot } else { 0 })
     }
 
     /// The robot on the block that is wanted, or else on the one that leads to a goal, or else the closest one.
@@ -309,8 +342,7 @@ impl Traffic {
 
     /// Availability of a block; `None` if the robot cannot have it. `out` is the way out of the dead end that it is in.
     fn availability(&self, block: Block, claim: &Claim, out: Option<Block>, routes: &Routes) -> Option<Availability> {
-        let right = |goes_out: bool, priority: Priority, robot: u32| (goes_out, priority, Reverse(robot));
-        let mine = right(out == Some(block), claim.priority, claim.robot);
+        let mine = right_of_way(out == Some(block), claim.priority, claim.robot);
         let mut standing = Availability::Free;
         for peer in &self.near {
             if peer.holds(block) {
@@ -327,13 +359,18 @@ impl Traffic {
                 };
             } else if peer.wanted == block {
                 let goes_out = way_out(peer.next, routes) == Some(block);
-                if right(goes_out, peer.priority, peer.robot) > mine {
+                if right_of_way(goes_out, peer.priority, peer.robot) > mine {
                     return None;
                 }
             }
         }
         Some(standing)
     }
+}
+
+/// Of two robots that want a block, the one with the higher right goes first.
+fn right_of_way(comes_out: bool, priority: Priority, robot: u32) -> (bool, Priority, Reverse<u32>) {
+    (comes_out, priority, Reverse(robot))
 }
 
 /// The free neighbour of a block that is the closest to a goal.
@@ -346,5 +383,40 @@ impl Position {
     /// True if the robot holds a block.
     pub(super) fn holds(&self, block: Block) -> bool {
         self.block == block || self.next == block
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Map;
+
+    #[test]
+    fn who_goes_first_has_the_rule_that_decided_it() {
+        let mut routes = Routes::default();
+        // A dead end of two blocks at the top; all blocks below are free.
+        routes.learn(Map::read("@.@\n@.@\n...\n...\n...").unwrap(), Block::new(2, 4));
+        let [at, block, other] = [(1, 1), (1, 2), (0, 2)].map(|(x, y)| Block::new(x, y));
+        let priority = |purpose: u64, age: u64, robot: u32| Priority { rank: purpose << 56 | age, robot };
+        let job = priority(2, 5, 4);
+        let wants = |priority: Priority| Position { robot: 7, block: other, next: other, wanted: block, priority };
+        let is_there = |priority: Priority| Position { robot: 7, block, next: block, wanted: block, priority };
+        let moves = Position { next: block, ..wants(job) };
+        let coming_out = Position { block: at, next: at, ..wants(priority(0, 0, 7)) };
+        for (peer, from, own, expected) in [
+            (is_there(job), at, job, (7, Precedence::There, 0)),
+            (is_there(IMMOVABLE), at, job, (7, Precedence::Stays, 0)),
+            (moves, at, job, (7, Precedence::Moves, 0)),
+            (wants(priority(3, 9, 7)), at, job, (4, Precedence::ComesOut, 0)),
+            (coming_out, other, job, (7, Precedence::ComesOut, 0)),
+            (wants(priority(3, 9, 7)), other, job, (7, Precedence::Charger, 0)),
+            (wants(priority(3, 9, 8)), other, job, (7, Precedence::Charger, 8)),
+            (wants(priority(1, 9, 7)), other, job, (4, Precedence::Job, 0)),
+            (wants(priority(2, 4, 7)), other, job, (4, Precedence::Older, 0)),
+            (wants(priority(2, 5, 7)), other, job, (4, Precedence::Number, 0)),
+        ] {
+            let traffic = Traffic { near: vec![peer.clone()], ..Traffic::default() };
+            assert_eq!(traffic.precedence((block, 7), (4, from, own), &routes), expected, "{peer:?} from {from}");
+        }
     }
 }
