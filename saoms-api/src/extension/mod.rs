@@ -37,7 +37,7 @@ mod summary;
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
-pub use changes::{ChangeConsequence, ChangeLimit};
+pub use changes::{ChangeConsequence, ChangeLimit, ChangeObjection};
 pub use curves::{Curve, CurvesRegistration, RunCurves};
 pub use dashboard::{DashboardLine, DashboardPlot, DashboardState, DashboardView, Summary};
 pub use effects::ServiceEffects;

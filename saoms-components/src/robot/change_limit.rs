@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use saoms_api::extension::{ChangeLimit, submit};
+use saoms_api::extension::{ChangeLimit, ChangeObjection, submit};
 use saoms_api::rule::FleetView;
 
 use super::Robot;
@@ -26,14 +26,15 @@ fn robots(view: &FleetView<'_>) -> BTreeMap<String, Identity> {
 }
 
 /// Jobs, grants and the body in the world belong to the number of a robot, and its state to the world in which it is.
-fn identities(present: &FleetView<'_>, wanted: &FleetView<'_>) -> Vec<String> {
+fn identities(present: &FleetView<'_>, wanted: &FleetView<'_>) -> Vec<ChangeObjection> {
     let after = robots(wanted);
     let reason = |(path, before): (String, Identity)| {
         let after = after.get(&path).filter(|after| **after != before)?;
         let what = if after.number != before.number { "number" } else { "world" };
-        Some(format!(
+        let reason = format!(
             "the {what} of `{path}` changes, by which the others know it: remove it first, then add it with the new one"
-        ))
+        );
+        Some(ChangeObjection::new(reason).about(path))
     };
     let before = robots(present);
     let mut reasons = handed_on(&before, &after);
@@ -43,7 +44,7 @@ fn identities(present: &FleetView<'_>, wanted: &FleetView<'_>) -> Vec<String> {
 
 /// Robots that join with the number of one that leaves. That one's body stays on the floor where it went last, and the
 /// others still hear of it by its number, while the new one begins as if it were somewhere else.
-fn handed_on(before: &BTreeMap<String, Identity>, after: &BTreeMap<String, Identity>) -> Vec<String> {
+fn handed_on(before: &BTreeMap<String, Identity>, after: &BTreeMap<String, Identity>) -> Vec<ChangeObjection> {
     let leaving = before.iter().filter(|(path, _)| !after.contains_key(*path));
     let numbers: BTreeMap<u32, &str> =
         leaving.filter_map(|(path, robot)| Some((robot.number?, path.as_str()))).collect();
@@ -51,9 +52,10 @@ fn handed_on(before: &BTreeMap<String, Identity>, after: &BTreeMap<String, Ident
     let reason = |(path, robot): (&String, &Identity)| {
         let number = robot.number?;
         let leaving = numbers.get(&number)?;
-        Some(format!(
+        let reason = format!(
             "`{path}` joins with the number {number} of `{leaving}`, which leaves: remove that one first, then add `{path}`"
-        ))
+        );
+        Some(ChangeObjection::new(reason).about(path))
     };
     joining.filter_map(reason).collect()
 }

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use saoms_api::extension::{ChangeConsequence, ChangeLimit, submit};
+use saoms_api::extension::{ChangeConsequence, ChangeLimit, ChangeObjection, submit};
 use saoms_api::rule::{ComponentView, FleetView};
 
 use super::Zone;
@@ -33,15 +33,23 @@ struct Border {
 }
 
 /// What hinders new borders where robots stay, or have left their bodies on the floor.
-fn borders(present: &FleetView<'_>, wanted: &FleetView<'_>) -> Vec<String> {
+fn borders(present: &FleetView<'_>, wanted: &FleetView<'_>) -> Vec<ChangeObjection> {
     let (before, after) = (zones(present), zones(wanted));
     let stays = !staying(present, wanted).is_empty();
     if before == after || !stays && !keeps_world(present, wanted) {
         return Vec::new();
     }
+    // The first zone with other borders than before, or one that is gone.
+    let differs = |one: &(&&str, &Border)| before.get(*one.0) != Some(one.1);
+    let differing = after.iter().find(differs).or_else(|| before.iter().find(|(path, _)| !after.contains_key(**path)));
     let mut reasons = Vec::new();
-    let mut refuse =
-        |reason: String| reasons.push(format!("{reason}: end the run, and start it with the new composites"));
+    let mut refuse = |reason: String| {
+        let objection = ChangeObjection::new(format!("{reason}: end the run, and start it with the new composites"));
+        reasons.push(match differing {
+            Some((path, _)) => objection.about(*path),
+            None => objection,
+        });
+    };
     if before.is_empty() != after.is_empty() {
         let (what, why) = match (before.is_empty(), stays) {
             (true, false) => return Vec::new(),
@@ -75,11 +83,12 @@ fn borders(present: &FleetView<'_>, wanted: &FleetView<'_>) -> Vec<String> {
     };
     for (path, border) in &after {
         if let Some(other) = path_of(&before, border.number).filter(|other| stays && other != path) {
-            reasons.push(format!(
+            let reason = format!(
                 "`{path}` gets the number {} of `{other}`, by which robots know that zone: give it a number that no zone \
                  had",
                 border.number
-            ));
+            );
+            reasons.push(ChangeObjection::new(reason).about(*path));
         }
     }
     reasons
@@ -196,7 +205,7 @@ mod tests {
         }
     }
 
-    fn judge(before: &[Given], after: &[Given], node: &str, has_broker: bool) -> Vec<String> {
+    fn judge(before: &[Given], after: &[Given], node: &str, has_broker: bool) -> Vec<ChangeObjection> {
         let [before, after] = [before, after].map(|all| {
             let views = all.iter().map(|one| view(one, node, has_broker));
             views.collect::<Vec<_>>()
@@ -213,7 +222,8 @@ mod tests {
         for (node, has_broker) in [("floor", false), ("", true)] {
             let reasons = judge(&before, &after, node, has_broker);
             assert_eq!(reasons.len(), 1, "{reasons:?}");
-            assert!(reasons[0].contains("`Zone1` may be in another program than they are"), "{reasons:?}");
+            assert!(reasons[0].reason.contains("`Zone1` may be in another program than they are"), "{reasons:?}");
+            assert_eq!(reasons[0].component.as_deref(), Some("Zone1"));
             assert!(judge(&before, &before, node, has_broker).is_empty());
         }
         // A zone keeps its number, and a number its zone.
@@ -221,10 +231,10 @@ mod tests {
         let reasons = judge(&before, &moved, "", false);
         let expected = "`Zone3` gets the number 1 of `Zone1`, by which robots know that zone: give it a number that no \
                         zone had";
-        assert_eq!(reasons, [expected]);
+        assert_eq!(reasons, [ChangeObjection::new(expected).about("Zone3")]);
         let reasons = judge(&before, &before[1..], "", false);
         assert!(
-            reasons[0].starts_with("the site loses its last zone, and robots that stay hold grants"),
+            reasons[0].reason.starts_with("the site loses its last zone, and robots that stay hold grants"),
             "{reasons:?}"
         );
     }

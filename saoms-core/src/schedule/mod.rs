@@ -33,7 +33,7 @@ mod why;
 
 pub use change::{
     ChangeError, ChangeOptions, ChangeWithdrawal, Changed, HandedOver, PlannedChanges, PlannedDifference,
-    PlannedMember, PlannedReplacement, PlannedValue, SetError, StartError, Takeover,
+    PlannedMember, PlannedRefusal, PlannedReplacement, PlannedValue, SetError, StartError, Takeover,
 };
 pub use engine::memory::SharedText;
 pub use fleet::RunningFleet;

@@ -2,9 +2,9 @@
 //!
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
+mod component_places;
 mod fault_subjects;
 mod fleet_view;
-mod network_places;
 mod placement;
 mod run_policy;
 mod task;
@@ -20,11 +20,11 @@ use std::time::Duration;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
+pub use component_places::ComponentPlaces;
+pub(crate) use component_places::OF_NETWORKS;
 pub use fault_subjects::fault_subjects;
 pub(crate) use fleet_view::class_view;
 pub use fleet_view::seen;
-pub use network_places::NetworkPlaces;
-pub(crate) use network_places::OF_NETWORKS;
 pub use run_policy::{AlertCommand, AlertUrl, RunPolicy};
 pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_list::TopicList;
@@ -45,8 +45,8 @@ pub struct Assembly {
     pub node: SmolStr,
     /// What the outermost composites say of the run.
     pub run: RunPolicy,
-    /// Where the settings of networks are written.
-    pub networks: NetworkPlaces,
+    /// Where components and their settings of networks are written.
+    pub places: ComponentPlaces,
 }
 
 /// One component, resolved.

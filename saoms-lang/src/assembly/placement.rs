@@ -26,7 +26,7 @@ impl Assembly {
     /// components of other nodes are set apart.
     #[must_use]
     pub fn at(self, node: &str) -> Assembly {
-        let Assembly { components: mut all, elsewhere: mut others, run, networks, .. } = self;
+        let Assembly { components: mut all, elsewhere: mut others, run, places: written, .. } = self;
         let ends = all.iter().map(|spec| {
             let remote = |wire: &Wire| wire.targets.iter().filter_map(|end| remote(&all, spec, end)).collect();
             spec.references.iter().map(remote).collect::<Vec<Box<[RemoteTarget]>>>()
@@ -48,7 +48,7 @@ impl Assembly {
         }
         // Nobody here calls in their place.
         others.iter_mut().flat_map(|spec| &mut spec.references).for_each(|wire| wire.targets.clear());
-        Assembly { components, elsewhere: others, node: node.into(), run, networks }
+        Assembly { components, elsewhere: others, node: node.into(), run, places: written }
     }
 
     /// The calls between programs that go over the network at a url, each with the component that calls.

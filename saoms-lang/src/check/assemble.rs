@@ -8,7 +8,7 @@ use saoms_api::extension::RouterClass;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-use crate::assembly::{Assembly, ComponentSpec, NetworkPlaces, OF_NETWORKS, Wire, WireTarget, Written};
+use crate::assembly::{Assembly, ComponentPlaces, ComponentSpec, OF_NETWORKS, Wire, WireTarget, Written};
 use crate::check::classes;
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
@@ -38,7 +38,7 @@ pub(crate) fn assemble(
     let mut components = Vec::with_capacity(count);
     let first = fleet.contribution.asked_for().first().map(|first| Path::new(sources.get(first.file()).path()));
     let folder = first.and_then(Path::parent).unwrap_or(Path::new("")).to_owned();
-    let mut networks = NetworkPlaces { folder, ..NetworkPlaces::default() };
+    let mut written = ComponentPlaces { folder, ..ComponentPlaces::default() };
     let fault_nodes = FaultNodes::of(fleet, &checks);
     for (place, check) in checks.into_iter().enumerate() {
         let member = &fleet.members[place];
@@ -56,13 +56,13 @@ pub(crate) fn assemble(
             task.password = task.password.take().map(|secret| from_variable(secret, place, sources));
         }
         let is_on_network = task.as_ref().is_some_and(|task| task.url.is_some());
-        if is_on_network || RouterClass::linked().any(|router| router.class == class.class.declaration().name) {
-            let given = OF_NETWORKS.iter().filter_map(|name| Some((*name, check.given.get(name)?.place)));
-            let places = given.chain([("", member.component.name.location)]).collect();
-            networks.places.insert(member.path().to_owned(), places);
-        }
-        let (values, written, places) = check.given.into_own();
-        let written = without_secrets(class, &values, written, &places, sources);
+        let is_router = || RouterClass::linked().any(|router| router.class == class.class.declaration().name);
+        let of_networks = if is_on_network || is_router() { &OF_NETWORKS[..] } else { &[] };
+        let given = of_networks.iter().filter_map(|name| Some((*name, check.given.get(name)?.place)));
+        let places = given.chain([("", member.component.name.location)]).collect();
+        written.places.insert(member.path().to_owned(), places);
+        let (values, own_texts, places) = check.given.into_own();
+        let own_texts = without_secrets(class, &values, own_texts, &places, sources);
         let references = class.references.iter().zip(&wiring[place]).enumerate();
         let references = references.map(|(number, (declared, targets))| Wire {
             reference: declared.name.clone(),
@@ -92,7 +92,7 @@ pub(crate) fn assemble(
             class: Arc::clone(class.class),
             library: classes::library(member.component, fleet.contribution, sources),
             values,
-            written,
+            written: own_texts,
             task,
             references: references.collect(),
             loops: check.loops?.specs,
@@ -104,7 +104,7 @@ pub(crate) fn assemble(
         elsewhere: Vec::new(),
         node: SmolStr::default(),
         run: run_settings::policy(fleet, sources),
-        networks,
+        places: written,
     })
 }
 

@@ -145,7 +145,7 @@ fn asked(
 fn show(fleet: &RunningFleetArguments, answer: &Value) -> Exit {
     let plan = &answer["plan"];
     let failure = &answer["failure"];
-    let refusals: Vec<&str> = texts(&plan["refused"]).collect();
+    let refusals: Vec<String> = items(plan, "refused").map(refusal).collect();
     let uncommitted = answer["uncommitted"].as_str();
     match fleet.format {
         Format::Json => {
@@ -161,11 +161,12 @@ fn show(fleet: &RunningFleetArguments, answer: &Value) -> Exit {
                 print(&words(plan, &answer["applied"]));
             }
             match failure["error"].as_str() {
+                Some(_) if !refusals.is_empty() => eprint(&format!("{}{}", refusals.concat(), help(plan, failure))),
                 Some(error) => eprint(&format!("error: {}\n{}", one_line(error), help(plan, failure))),
                 None if let Some(why) = uncommitted => {
                     eprint(&format!("error: the fleet has changed: {}\n", one_line(why)));
                 }
-                None => refusals.iter().for_each(|reason| eprint(&format!("error: {}\n", one_line(reason)))),
+                None => eprint(&refusals.concat()),
             }
         }
     }
@@ -190,6 +191,12 @@ fn items<'v>(plan: &'v Value, name: &str) -> impl Iterator<Item = &'v Value> {
 
 fn is_empty(plan: &Value) -> bool {
     ["added", "removed", "replaced", "set"].iter().all(|name| items(plan, name).next().is_none())
+}
+
+/// A reason why a change cannot be made, and where the component is written that it is about.
+fn refusal(one: &Value) -> String {
+    let place = one["at"].as_str().map(|at| format!("  --> {}\n", one_line(at))).unwrap_or_default();
+    format!("error: {}\n{place}", one_line(one["reason"].as_str().unwrap_or_default()))
 }
 
 /// What helps against a failure.

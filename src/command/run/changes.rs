@@ -7,10 +7,11 @@ use std::time::SystemTime;
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{ChangeAnswer, ChangeFailure, ChangeRequest};
-use saoms_core::schedule::{ChangeError, ChangeOptions, ChangeWithdrawal, Handle};
+use saoms_core::schedule::{ChangeError, ChangeOptions, ChangeWithdrawal, Handle, PlannedRefusal};
 use saoms_lang::assembly::{Assembly, RunPolicy};
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::{Compilation, INPUT};
+use saoms_lang::source::{LineColumn, Location, Sources};
 use saoms_tools::diagnostics::from_folder;
 use serde_json::Value;
 
@@ -55,6 +56,8 @@ pub(super) struct WantedFleet {
     pub(super) answer: ChangeAnswer,
     /// The fleet; `None` where they describe none.
     pub(super) assembly: Option<Assembly>,
+    /// The texts that were read.
+    sources: Sources,
     /// The files of composites and values that were read.
     pub(super) read: Vec<PathBuf>,
     /// The time at which that began.
@@ -110,6 +113,10 @@ impl FleetChanges {
             self.handle.note(Level::Info, text.to_owned());
         }
         wanted.answer.diagnostics.iter_mut().for_each(|one| shorten(one, &request.folder));
+        let refused = wanted.answer.plan.iter_mut().flat_map(|plan| &mut plan.refused);
+        for at in refused.filter_map(|refusal| refusal.at.as_mut()) {
+            *at = from_folder(at, &request.folder).to_owned();
+        }
         Ok(wanted.answer)
     }
 
@@ -165,13 +172,14 @@ impl FleetChanges {
             answer.failure = Some(ChangeFailure { error, refused: true, busy: false });
         }
         let assembly = assembly.map(|whole| self.node.iter().fold(whole, |whole, node| whole.at(node)));
-        let read = compilation.sources.open().files_read();
-        Ok(WantedFleet { answer, assembly, read, since, is_withdrawn: false })
+        let sources = compilation.sources;
+        let read = sources.open().files_read();
+        Ok(WantedFleet { answer, assembly, sources, read, since, is_withdrawn: false })
     }
 
     /// Finds out what a wanted fleet changes, and changes it where there are options for that.
     pub(super) fn settle(&self, wanted: &mut WantedFleet, files: &FleetArguments, options: Option<ChangeOptions>) {
-        let WantedFleet { answer, assembly, read, since, is_withdrawn } = wanted;
+        let WantedFleet { answer, assembly, sources, read, since, is_withdrawn } = wanted;
         answer.applied = options.as_ref().map(|_| false);
         let Some(assembly) = assembly else { return };
         if assembly.components.is_empty() {
@@ -189,7 +197,9 @@ impl FleetChanges {
                     .to_owned(),
             );
         }
-        answer.plan = Some(self.handle.plan(assembly));
+        let mut plan = self.handle.plan(assembly);
+        locate(&mut plan.refused, assembly, sources);
+        answer.plan = Some(plan);
         let Some(mut options) = options else { return };
         options.keeps = self.applied.as_ref().and_then(|one| one.of(assembly, &files.files, options.by.clone()));
         match self.handle.apply(assembly, options) {
@@ -215,6 +225,18 @@ impl FleetChanges {
                 answer.failure = Some(ChangeFailure { error, refused, busy });
             }
         }
+    }
+}
+
+/// Says where the components are written that refusals are about.
+fn locate(refused: &mut [PlannedRefusal], assembly: &Assembly, sources: &Sources) {
+    for refusal in refused {
+        let place = refusal.component.as_deref().and_then(|component| assembly.places.get(component, ""));
+        refusal.at = place.map(|Location { file, span }| {
+            let file = sources.get(file);
+            let LineColumn { line, column } = file.line_column(span.start);
+            format!("{}:{line}:{column}", file.path())
+        });
     }
 }
 

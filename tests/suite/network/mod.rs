@@ -1,6 +1,7 @@
 //! Fleets in several programs: real processes over loopback, and what happens to processes and lines.
 
 mod access;
+mod borders;
 mod broken;
 mod calls;
 mod certificates;

@@ -7,11 +7,13 @@ use saoms_api::extension::{ChangeConsequence, ChangeLimit};
 use saoms_api::rule::FleetView;
 use saoms_lang::assembly::{Assembly, ComponentSpec, seen};
 
+use super::planned::PlannedRefusal;
+
 /// The judgement of crates of components on a change, about all sites.
 #[derive(Default)]
 pub(super) struct Judgement {
     /// The reasons against it.
-    pub(super) reasons: Vec<String>,
+    pub(super) reasons: Vec<PlannedRefusal>,
     /// What follows of it.
     pub(super) consequences: Vec<String>,
 }
@@ -28,7 +30,8 @@ impl Judgement {
     }
 
     fn look(&mut self, present: &FleetView<'_>, wanted: &FleetView<'_>) {
-        self.reasons.extend(ChangeLimit::linked().flat_map(|limit| (limit.judge)(present, wanted)));
+        let objections = ChangeLimit::linked().flat_map(|limit| (limit.judge)(present, wanted));
+        self.reasons.extend(objections.map(PlannedRefusal::from));
         self.consequences.extend(ChangeConsequence::linked().flat_map(|one| (one.tell)(present, wanted)));
     }
 }

@@ -7,6 +7,7 @@ use saoms_lang::assembly::ComponentSpec;
 
 use super::leaving::Leaving;
 use super::live::changed;
+use super::planned::PlannedRefusal;
 use super::takeover::{Outgoing, Predecessor, Takeover};
 use super::updating::Updated;
 use crate::journal::ComponentName;
@@ -31,19 +32,25 @@ impl Engine {
 
     /// What of a wanted fleet the networks of the program hinder: it takes part in those that it had at its start, and
     /// other programs know its components from theirs.
-    pub(super) fn beyond_its_networks(&self, part: Option<&PartOfFleet>, wanted: &[ComponentSpec]) -> Vec<String> {
-        let mut reasons: Vec<String> = Vec::new();
+    pub(super) fn beyond_its_networks(
+        &self,
+        part: Option<&PartOfFleet>,
+        wanted: &[ComponentSpec],
+    ) -> Vec<PlannedRefusal> {
+        let mut reasons = Vec::new();
         let members = self.slots.iter().filter(|slot| slot.is_member());
         let known: BTreeSet<&str> = members.filter_map(|slot| slot.spec.url()).collect();
         let urls: BTreeSet<&str> = wanted.iter().filter_map(ComponentSpec::url).collect();
         for url in urls.difference(&known).filter(|url| !self.networks.has(url)) {
-            reasons.push(format!("the program takes part in no network at `{url}`: it joins networks at its start"));
+            let reason = format!("the program takes part in no network at `{url}`: it joins networks at its start");
+            let member = wanted.iter().find(|spec| spec.url() == Some(*url)).map(|spec| spec.path.clone());
+            reasons.push(PlannedRefusal { component: member, ..PlannedRefusal::of_fleet(reason) });
         }
         let fleet = |part: Option<&PartOfFleet>| part.map(|part| (part.node.clone(), part.fleet.clone()));
         if fleet(part) != fleet(self.networks.elsewhere.part()) {
             let reason = "other programs run a part of the fleet, and know its components, their classes and their \
                           nodes from their start: restart all of them with the new composites";
-            reasons.push(reason.to_owned());
+            reasons.push(PlannedRefusal::of_fleet(reason.to_owned()));
         }
         reasons
     }

@@ -41,7 +41,9 @@ pub(crate) use leaving::{LEAVING, Leaving};
 pub use live::SetError;
 pub(crate) use live::changed;
 pub use options::{ChangeOptions, ChangeWithdrawal};
-pub use planned::{HandedOver, PlannedChanges, PlannedDifference, PlannedMember, PlannedReplacement, PlannedValue};
+pub use planned::{
+    HandedOver, PlannedChanges, PlannedDifference, PlannedMember, PlannedRefusal, PlannedReplacement, PlannedValue,
+};
 pub use takeover::Takeover;
 
 /// A change that was made, by the paths of components.
@@ -88,7 +90,8 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: &Assembly, options: ChangeOpti
     let _one_at_a_time = shared.try_lock_changes().ok_or(ChangeError::Busy)?;
     let Wanted { plan, planned, current, .. } = Wanted::of(shared, wanted);
     if !planned.refused.is_empty() {
-        return Err(ChangeError::Refused(planned.refused));
+        let reasons = planned.refused.into_iter().map(|one| one.reason);
+        return Err(ChangeError::Refused(reasons.collect()));
     }
     if !options.allow_loss {
         let losses = planned.losses().map(|one| one.component.clone());
@@ -146,9 +149,16 @@ impl Wanted {
         // What the fleet itself tells its components is no difference.
         let told = |spec: &Option<Arc<ComponentSpec>>| spec.as_ref().map(|spec| engine.as_told(Arc::clone(spec)));
         let expected: Specs = specs.iter().map(told).collect();
+        let elsewhere: Specs = engine.networks.elsewhere.specs().map(|(_, spec)| Some(spec)).collect();
         shared.release(engine);
         let plan = ChangePlan::between(&as_members(&current), &as_members(&expected));
-        let judgement = if plan.is_empty() { Judgement::default() } else { Judgement::of(&current, &expected) };
+        let judgement = if plan.is_empty() && elsewhere.is_empty() {
+            Judgement::default()
+        } else {
+            // Those of other programs do not change here, and may not have to in those.
+            let wanted_elsewhere: Specs = wanted.elsewhere.iter().map(|spec| Some(Arc::new(spec.clone()))).collect();
+            Judgement::of(&[&current[..], &elsewhere].concat(), &[expected.clone(), wanted_elsewhere].concat())
+        };
         refused.extend(judgement.reasons);
         let deadline = Instant::now() + WAIT;
         let state = |number: usize, saves: bool| match runs.get(number) {
@@ -157,7 +167,8 @@ impl Wanted {
             _ => HandedOver::None,
         };
         let planned = PlannedChanges::of(&plan, &current, &expected, state);
-        let planned = PlannedChanges { refused, consequences: judgement.consequences, ..planned };
+        let consequences = if plan.is_empty() { Vec::new() } else { judgement.consequences };
+        let planned = PlannedChanges { refused, consequences, ..planned };
         Wanted { plan, specs, current, planned }
     }
 }

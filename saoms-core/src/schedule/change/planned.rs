@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use saoms_api::extension::ChangeObjection;
 use saoms_api::host::{PropertyValue, WriteProperties};
 use saoms_lang::assembly::{ComponentSpec, TaskProperties};
 use saoms_lang::registry::PropertyDeclaration;
@@ -32,7 +33,33 @@ pub struct PlannedChanges {
     /// What follows of that in the domain of the components, as their crate tells it; a line each.
     pub consequences: Vec<String>,
     /// Why it cannot be done while the fleet runs; empty where it can.
-    pub refused: Vec<String>,
+    pub refused: Vec<PlannedRefusal>,
+}
+
+/// A reason why a change cannot be made while the fleet runs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct PlannedRefusal {
+    /// The reason.
+    pub reason: String,
+    /// The path of the component that it is about, where it is about one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub component: Option<String>,
+    /// Where that component is written, as `FILE:LINE:COLUMN`, for whoever knows the files; the fleet does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<String>,
+}
+
+impl PlannedRefusal {
+    /// A reason that is about no component alone.
+    pub(super) fn of_fleet(reason: String) -> PlannedRefusal {
+        PlannedRefusal { reason, component: None, at: None }
+    }
+}
+
+impl From<ChangeObjection> for PlannedRefusal {
+    fn from(ChangeObjection { reason, component }: ChangeObjection) -> PlannedRefusal {
+        PlannedRefusal { reason, component, at: None }
+    }
 }
 
 /// A component that joins or ends.

@@ -142,7 +142,7 @@ impl Resolver<'_> {
             None => (described.first, "url"),
         };
         let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(component) else { return };
-        let Some(place) = self.assembly.networks.get(path, property) else { return };
+        let Some(place) = self.assembly.places.get(path, property) else { return };
         let message = format!("component `{path}` is on the network `{url}`, but {error}");
         let one = Diagnostic::new(&codes::NO_TRANSPORT, place, message);
         self.faults.push(one.help("docs/networks.md says where the libraries of transports are looked for"));
@@ -151,7 +151,7 @@ impl Resolver<'_> {
     /// Notes that the url of a network without a router does not name this program, but these.
     pub(super) fn unnamed(&mut self, described: &Described, named: &[&str]) {
         let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(described.first) else { return };
-        let Some(place) = self.assembly.networks.get(path, "url") else { return };
+        let Some(place) = self.assembly.places.get(path, "url") else { return };
         let named: Vec<String> = named.iter().map(|name| format!("`{name}`")).collect();
         let message =
             format!("this program, `{}`, is not among the peers of this network: {}", self.name, named.join(", "));
@@ -161,13 +161,13 @@ impl Resolver<'_> {
 
     fn has(&self, component: usize, property: &str) -> bool {
         let Some(spec) = self.assembly.all().nth(component) else { return false };
-        self.assembly.networks.get(&spec.path, property) != self.assembly.networks.get(&spec.path, "")
+        self.assembly.places.get(&spec.path, property) != self.assembly.places.get(&spec.path, "")
     }
 
     /// Notes what is wrong with a property of a component.
     fn fault(&mut self, component: usize, property: &str, text: &str) {
         let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(component) else { return };
-        let Some(place) = self.assembly.networks.get(path, property) else { return };
+        let Some(place) = self.assembly.places.get(path, property) else { return };
         let message = format!("component `{path}`, property `{property}`: {text}");
         let one = Diagnostic::new(&codes::NETWORK_FILE, place, message);
         let one = one.help("docs/security.md says how a network is protected");
@@ -178,7 +178,7 @@ impl Resolver<'_> {
 
     /// A path from the folder of the first composite.
     fn path(&self, path: &str) -> std::path::PathBuf {
-        self.assembly.networks.folder.join(Path::new(path.trim()))
+        self.assembly.places.folder.join(Path::new(path.trim()))
     }
 
     /// A user with a password from where it is kept.

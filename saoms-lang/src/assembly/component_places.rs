@@ -8,9 +8,9 @@ pub(crate) const OF_NETWORKS: [&str; 11] = [
     "url", "IP", "port", "transport", "user", "password", "passwordFile", "users", "tlsCa", "tlsCertificate", "tlsKey",
 ];
 
-/// Where the settings of networks are written, for who finds that they cannot be used.
+/// Where components and their settings of networks are written, for who finds later that they cannot be used.
 #[derive(Clone, Debug, Default)]
-pub struct NetworkPlaces {
+pub struct ComponentPlaces {
     /// The folder of the first composite, from which the paths of their files start.
     pub folder: PathBuf,
     /// By the paths of components, the places of the values of their properties, and under an empty name that of the
@@ -18,7 +18,7 @@ pub struct NetworkPlaces {
     pub(crate) places: BTreeMap<String, Vec<(&'static str, Location)>>,
 }
 
-impl NetworkPlaces {
+impl ComponentPlaces {
     /// Where a component, by its path, gives a property; or else where its name is.
     pub fn get(&self, component: &str, property: &str) -> Option<Location> {
         let places = self.places.get(component)?;
