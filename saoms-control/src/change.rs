@@ -36,7 +36,8 @@ pub struct ChangeRequest {
     /// True if components may lose their state.
     #[serde(default)]
     pub allow_loss: bool,
-    /// The time for which components that leave may finish what they have begun, in milliseconds; 60 s without it.
+    /// The time for which components that leave may finish what they have begun before they end, in milliseconds; 60 s
+    /// without it.
     #[serde(default)]
     pub wait_ms: Option<u64>,
     /// Who wants the change, for the journal.

@@ -196,12 +196,26 @@ fn one_that_leaves_finishes_first() {
 }
 
 #[test]
-fn one_that_does_not_finish_in_time_is_called_back() {
+fn one_that_does_not_finish_in_time_ends_all_the_same_and_is_told() {
+    for wait in [0, 50] {
+        let (fleet, diary) = started("A actor period=1\nB worker period=1 needs=1000000\nC worker period=1 needs=0");
+        let changed = apply(&fleet, "A actor period=1", wait).unwrap();
+        assert_eq!(changed.removed, ["C", "B"]);
+        assert!(changed.unfinished.contains(&"B".to_owned()), "{changed:?}");
+        assert!(wait == 0 || changed.unfinished == ["B"], "{changed:?}");
+        end(fleet);
+        let told = diary.lines();
+        // It has heard that it leaves before it ends.
+        assert!(told.contains(" left, leaving true") && !told.contains("leaving false"), "{told}");
+    }
+}
+
+#[test]
+fn one_that_did_not_finish_in_time_is_called_back_when_the_change_fails() {
     let before = "A actor period=1\nB worker period=1 needs=1000000";
     let (fleet, diary) = started(before);
-    let error = apply(&fleet, "A actor period=1", 50).unwrap_err();
-    let expected = "component `B`: it has not finished what it has begun within 50ms; `saoms stop` ends it at once";
-    assert_eq!(error.to_string(), expected);
+    let error = apply(&fleet, "A actor period=1\nX actor period=1 first=[fail no room]", 50).unwrap_err();
+    assert_eq!(error.to_string(), "component `X` of class `actor` could not start: no room");
     is_again(&fleet, before);
     end(fleet);
     assert!(diary.lines().contains(" left, leaving false"), "{}", diary.lines());
@@ -228,10 +242,12 @@ fn who_has_finished_is_called_back_when_the_change_fails() {
 fn one_that_refuses_stays() {
     let before = "A actor period=1\nB worker period=1 refuses=true";
     let (fleet, _) = started(before);
-    let error = apply(&fleet, "A actor period=1", 60_000).unwrap_err();
-    let expected = "component `B`: it does not leave: component `B` refuses the value: it is at home here";
-    assert_eq!(error.to_string(), expected);
-    is_again(&fleet, before);
+    for wait in [60_000, 0] {
+        let error = apply(&fleet, "A actor period=1", wait).unwrap_err();
+        let expected = "component `B`: it does not leave: component `B` refuses the value: it is at home here";
+        assert_eq!(error.to_string(), expected);
+        is_again(&fleet, before);
+    }
     end(fleet);
 }
 
@@ -460,7 +476,7 @@ fn a_second_change_is_refused_at_once_and_a_plan_is_made_meanwhile() {
         let second = apply(&fleet, "A actor period=2", 60_000).unwrap_err();
         assert_eq!(second.to_string(), "another change of the fleet is being made: ask again");
         assert!(!first.is_finished(), "it was made meanwhile");
-        first.join().unwrap().unwrap_err();
+        first.join().unwrap().unwrap();
     });
     end(fleet);
 }

@@ -60,8 +60,8 @@ pub(crate) struct ApplyArguments {
     #[arg(long)]
     allow_loss: bool,
 
-    /// The time of the run for which components that leave may finish what they have begun; if one does not, nothing
-    /// changes
+    /// The time of the run for which components that leave may finish what they have begun; then they end all the same,
+    /// and others take over what they hand over
     #[arg(long, value_name = "DURATION", default_value = "60s", allow_hyphen_values = true, value_parser = duration)]
     wait: Duration,
 

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
 use saoms_api::Level;
-use saoms_api::host::one_line;
+use saoms_api::host::{format_duration, one_line};
 use saoms_control::{ChangeAnswer, ChangeFailure, ChangeRequest};
 use saoms_core::schedule::{ChangeError, ChangeOptions, ChangeWithdrawal, Handle, PlannedRefusal};
 use saoms_lang::assembly::{Assembly, RunPolicy};
@@ -201,6 +201,7 @@ impl FleetChanges {
         locate(&mut plan.refused, assembly, sources);
         answer.plan = Some(plan);
         let Some(mut options) = options else { return };
+        let wait = options.wait;
         options.keeps = self.applied.as_ref().and_then(|one| one.of(assembly, &files.files, options.by.clone()));
         match self.handle.apply(assembly, options) {
             Ok(changed) => {
@@ -213,6 +214,14 @@ impl FleetChanges {
                 };
                 if !changed.plan.is_empty() {
                     self.handle.note(Level::Info, format!("the fleet has changed: {}", changed.plan.summary()));
+                }
+                if !changed.unfinished.is_empty() {
+                    let text = format!(
+                        "`{}` ended without having finished within {}: what was begun is handed over as after `saoms stop`",
+                        changed.unfinished.join("`, `"),
+                        format_duration(wait)
+                    );
+                    answer.notes.push(one_line(&text).into_owned());
                 }
                 // The fleet may have changed since it was planned first.
                 answer.plan = Some(changed.plan);

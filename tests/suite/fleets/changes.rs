@@ -4,6 +4,7 @@
 //! `SAOMS_CHANGES=2000` makes it a long one, and `SAOMS_SEED` another one.
 
 mod gauges;
+mod leaving;
 mod wish;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,8 +1,9 @@
 //! Components that are to leave the fleet finish what they have begun, before anything changes.
 //!
 //! A class that wants to be asked has a live property `leaving`. While it is true, a component begins nothing new, and
-//! votes in each execution whether work of its own is left. Once all who leave say that none is, the change is made; if
-//! one does not in time, or the change fails, they are called back with the value `false`.
+//! votes in each execution whether work of its own is left. Once all who leave say that none is, or their time is over,
+//! the change is made: one that has not finished hands over what it can when it shuts down. If the change fails, they
+//! are called back with the value `false`.
 
 use std::fmt;
 use std::sync::Arc;
@@ -10,10 +11,10 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use saoms_api::host::declaration::PropertyKind;
-use saoms_api::host::format_duration;
 use saoms_api::{Cause, Level};
 use saoms_lang::assembly::ComponentSpec;
 
+use super::transaction::WAIT;
 use super::{ChangeError, ChangeOptions};
 use crate::assemble::ChangePlan;
 use crate::observe::Occurrence;
@@ -101,13 +102,15 @@ impl<'a> Leave<'a> {
         Leave { shared, components }
     }
 
-    /// Waits until all have finished, or for the time of the run that the options give them.
-    pub(super) fn wait(&self, options: &ChangeOptions) -> Result<(), ChangeError> {
+    /// Waits until all have finished, or for the time of the run that the options give them; gives the paths of those
+    /// that have not.
+    pub(super) fn wait(&self, options: &ChangeOptions) -> Result<Vec<String>, ChangeError> {
         if self.components.is_empty() {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let deadline = self.shared.clock.now().saturating_add(nanos(options.wait));
-        let mut moved = Instant::now();
+        let asked = Instant::now();
+        let mut moved = asked;
         loop {
             if options.withdrawal.is_withdrawn() {
                 return Err(ChangeError::Withdrawn);
@@ -123,26 +126,26 @@ impl<'a> Leave<'a> {
             // Whoever does not run any more has nothing to finish; one that waits for its restart may have.
             let runs = |slot: &Slot| matches!(slot.state, SlotState::Starting | SlotState::Active | SlotState::Leaving);
             let slots = self.components.iter().map(|index| &engine.slots[*index as usize]);
-            let mut slots = slots.filter(|slot| runs(slot) && slot.leaving != Leaving::Finished);
-            let mut unfinished = slots.clone();
-            let refusal = slots.find_map(|slot| match &slot.leaving {
+            let slots = slots.filter(|slot| runs(slot) && slot.leaving != Leaving::Finished);
+            let refusal = slots.clone().find_map(|slot| match &slot.leaving {
                 Leaving::Refused(why) => Some((slot.name.to_string(), format!("it does not leave: {why}"))),
                 _ => None,
             });
-            let unfinished = unfinished.next().map(|slot| slot.name.to_string());
+            // One that has not heard of it yet may refuse.
+            let have_heard = slots.clone().all(|slot| slot.leaving != Leaving::Told) || asked.elapsed() > WAIT;
+            let mut unfinished = slots.map(|slot| slot.name.to_string()).peekable();
+            let component = unfinished.peek().cloned();
+            let left = component.is_none() || now >= deadline && have_heard;
+            let left = left.then(|| unfinished.collect());
             self.shared.release(engine);
             if let Some((component, why)) = refusal {
                 return Err(ChangeError::NotNow { component, why });
             }
-            let Some(component) = unfinished else { return Ok(()) };
-            let stands = moved.elapsed() > STANDSTILL;
-            if now >= deadline || stands {
-                let why = if stands {
-                    "it cannot finish what it has begun while the time of the run stands still".to_owned()
-                } else {
-                    let time = format_duration(options.wait);
-                    format!("it has not finished what it has begun within {time}; `saoms stop` ends it at once")
-                };
+            if let Some(unfinished) = left {
+                return Ok(unfinished);
+            }
+            if let Some(component) = component.filter(|_| moved.elapsed() > STANDSTILL) {
+                let why = "it cannot finish what it has begun while the time of the run stands still".to_owned();
                 return Err(ChangeError::NotNow { component, why });
             }
             sleep(LOOK);

@@ -57,6 +57,8 @@ pub struct Changed {
     pub replaced: Vec<(String, Takeover)>,
     /// Components that go on with new values of live properties.
     pub updated: Vec<String>,
+    /// Components that ended before they had finished what they had begun: their time for that was over.
+    pub unfinished: Vec<String>,
     /// The plan that was carried out, as it was when the change was made.
     pub plan: PlannedChanges,
 }
@@ -104,20 +106,22 @@ pub(crate) fn apply(shared: &Arc<Shared>, wanted: &Assembly, options: ChangeOpti
             return Err(ChangeError::LosesState { unsaved, anew });
         }
     }
-    let record = ChangeRecord { by: options.by.clone(), plan: planned, keeps: options.keeps.clone() };
-    record.unless_made(shared, carry_out(shared, wanted, &plan, &options, &record))
+    let (by, keeps) = (options.by.clone(), options.keeps.clone());
+    let mut record = ChangeRecord { by, plan: planned, unfinished: Vec::new(), keeps };
+    let made = carry_out(shared, wanted, &plan, &options, &mut record);
+    record.unless_made(shared, made)
 }
 
-/// Makes a change, once those that leave by this plan have finished.
+/// Makes a change, once those that leave by this plan have finished, or their time for that is over.
 fn carry_out(
     shared: &Arc<Shared>,
     wanted: &Assembly,
     plan: &ChangePlan,
     options: &ChangeOptions,
-    record: &ChangeRecord,
+    record: &mut ChangeRecord,
 ) -> Result<Changed, ChangeError> {
     let leave = Leave::of(shared, who_leaves(plan));
-    leave.wait(options)?;
+    record.unfinished = leave.wait(options)?;
     let now = Wanted::of(shared, wanted);
     if now.planned != record.plan {
         return Err(ChangeError::Meanwhile);
@@ -125,7 +129,7 @@ fn carry_out(
     let change = Change::new(shared, options.withdrawal.clone(), Some(record));
     let mut changed = change.make(&now.plan, now.specs, &now.current)?;
     leave.finish();
-    changed.plan = now.planned;
+    (changed.plan, changed.unfinished) = (now.planned, record.unfinished.clone());
     Ok(changed)
 }
 

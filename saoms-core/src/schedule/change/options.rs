@@ -15,7 +15,8 @@ use crate::schedule::engine::memory::SharedText;
 pub struct ChangeOptions {
     /// True if components may be replaced that do not hand over their state.
     pub allow_loss: bool,
-    /// The time of the run for which components that leave may finish what they have begun.
+    /// The time of the run for which components that leave may finish what they have begun; then they end all the same,
+    /// and hand over what they can.
     pub wait: Duration,
     /// Who wants the change, for the journal.
     pub by: Option<String>,

@@ -18,6 +18,8 @@ pub(super) struct ChangeRecord {
     /// Who.
     pub(super) by: Option<String>,
     pub(super) plan: PlannedChanges,
+    /// Components that end although they have not finished what they have begun.
+    pub(super) unfinished: Vec<String>,
     /// What outlives the program of a change that is made.
     pub(super) keeps: Option<(SharedText, String)>,
 }
@@ -36,7 +38,7 @@ impl ChangeRecord {
             Some(PlannedReplacement { component, class, differences: Vec::new(), state })
         });
         let plan = PlannedChanges { replaced: replaced.collect(), ..PlannedChanges::default() };
-        ChangeRecord { by: by.map(str::to_owned), plan, keeps: None }
+        ChangeRecord { by: by.map(str::to_owned), plan, unfinished: Vec::new(), keeps: None }
     }
 
     /// Writes to the journal what came of it.
@@ -66,13 +68,17 @@ impl ChangeRecord {
         result
     }
 
-    /// As `change by alice: 1 added (Robot9), 1 set (Robot7): made`.
+    /// As `change by alice: 1 added (Robot9), 1 set (Robot7): made`, or `... made; unfinished: Robot3`.
     fn text(&self, outcome: Result<(), &ChangeError>) -> String {
         let parts = self.components().into_iter().filter(|(_, paths)| !paths.is_empty());
         let parts = parts.map(|(what, paths)| format!("{} {what} ({})", paths.len(), paths.join(", ")));
         let parts: Vec<String> = parts.collect();
         let by = self.by.as_ref().map(|by| format!(" by {by}")).unwrap_or_default();
-        let came = outcome.map_or_else(|error| format!("not made: {error}"), |()| "made".to_owned());
+        let unfinished = match self.unfinished.as_slice() {
+            [] => String::new(),
+            unfinished => format!("; unfinished: {}", unfinished.join(", ")),
+        };
+        let came = outcome.map_or_else(|error| format!("not made: {error}"), |()| format!("made{unfinished}"));
         format!("change{by}: {}: {came}", parts.join(", "))
     }
 
@@ -83,6 +89,9 @@ impl ChangeRecord {
             values.insert(what.to_owned(), paths.into());
         }
         values.insert("made".to_owned(), outcome.is_ok().into());
+        if outcome.is_ok() && !self.unfinished.is_empty() {
+            values.insert("unfinished".to_owned(), self.unfinished.as_slice().into());
+        }
         values.extend(outcome.err().map(|error| ("error".to_owned(), error.to_string().into())));
         values
     }

@@ -412,6 +412,7 @@ impl<'a> Change<'a> {
             removed: removed.iter().map(|number| name(&engine, *number)).collect(),
             replaced: Vec::new(),
             updated: self.updated.iter().map(|one| name(&engine, one.number)).collect(),
+            unfinished: Vec::new(),
             plan: PlannedChanges::default(),
         };
         if let Some(record) = self.record {
