@@ -4,11 +4,11 @@
 use std::fs;
 use std::process::Stdio;
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::memory::{Dice, kills, start, wait_for_pieces};
 use super::state::crossing;
-use crate::support::{Program, ask, command, empty_folder, saoms_in, stdout, text};
+use crate::support::{PATIENCE, Program, ask, command, empty_folder, saoms_in, stdout, text};
 
 /// Most pieces that are open at once, so that the robots keep up.
 const MOST_OPEN: u64 = 8;
@@ -67,9 +67,13 @@ fn a_kill_while_a_change_is_made_leaves_one_fleet_whole() {
             accepted += 1;
         }
         let mut apply = command(&[&["apply", "other.composite"][..], &fleet].concat());
-        let apply = apply.current_dir(&folder).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // Some are killed before it is answered, some after that.
-        sleep(Duration::from_millis(dice.below(800)));
+        let mut apply = apply.current_dir(&folder).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // Half of them are killed right after it is answered, however slow the machine is, the others before that.
+        let patience = if kill % 2 == 0 { PATIENCE } else { Duration::from_millis(dice.below(800)) };
+        let until = Instant::now() + patience;
+        while Instant::now() < until && apply.try_wait().unwrap().is_none() {
+            sleep(Duration::from_millis(1));
+        }
         drop::<Program>(program);
         let applied = apply.wait_with_output().unwrap();
         if applied.status.success() {

@@ -23,7 +23,7 @@ use crate::boundary::build::library;
 use crate::support::{PATIENCE, Program, ask, command, empty_folder, send};
 
 /// Number of kills, unless `SAOMS_KILLS` says another one.
-const KILLS: u64 = 15;
+const KILLS: u64 = 10;
 /// Components that crash.
 const CRASHING: [&str; 6] = ["Robot1", "Robot2", "Robot3", "Zone", "Master", "Environment"];
 /// Most pieces that are open at once, so that the robots keep up.
