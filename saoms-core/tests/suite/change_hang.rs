@@ -273,8 +273,9 @@ fn a_change_is_undone_although_one_that_began_does_not_end() {
     assert_eq!(error.to_string(), "component `Y` of class `actor` could not start: no room");
     is_again(&fleet, before);
     goes_on(&fleet, "A");
-    let told = diary.lines();
-    assert!(told.contains("could not shut down: `shutdown` has not returned within 200ms"), "{told}");
+    until("that it hangs is told", || {
+        diary.lines().contains("could not shut down: `shutdown` has not returned within 200ms")
+    });
     ends(fleet);
 }
 

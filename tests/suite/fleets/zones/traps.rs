@@ -70,18 +70,18 @@ fn no_deadlock_is_named_while_robots_bring_luggage_through_traps_and_a_maze() {
 }
 
 /// Robots that each go where the next one stands, without a free block among them.
-fn ring(map: &str, robots: &[((i32, i32), (i32, i32))]) -> Problem {
+fn ring(map: &str, robots: &[[(i32, i32); 2]]) -> Problem {
     let block = |(x, y): (i32, i32)| Block::new(x, y);
-    let starts = robots.iter().map(|(start, _)| block(*start)).collect();
-    let tasks = robots.iter().enumerate().map(|(robot, (_, goal))| Task::VisitBy(block(*goal), robot)).collect();
+    let starts = robots.iter().map(|[start, _]| block(*start)).collect();
+    let tasks = robots.iter().enumerate().map(|(robot, [_, goal])| Task::VisitBy(block(*goal), robot)).collect();
     Problem { map: Map::read(map).unwrap(), starts, tasks, revealed: None }
 }
 
 #[test]
 fn a_deadlock_in_a_trap_is_named_within_50_periods() {
-    let square = [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 1)), ((0, 1), (0, 0))];
+    let square = [[(0, 0), (1, 0)], [(1, 0), (1, 1)], [(1, 1), (0, 1)], [(0, 1), (0, 0)]];
     // Others get on meanwhile, and are not named.
-    let beside = [((3, 0), (6, 1)), ((6, 1), (3, 0))];
+    let beside = [[(3, 0), (6, 1)], [(6, 1), (3, 0)]];
     let both = [&square[..], &beside[..]].concat();
     for (map, robots) in [("..\n..", &square[..]), ("..@....\n..@....", &both[..])] {
         let problem = ring(map, robots);

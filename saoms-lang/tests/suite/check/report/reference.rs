@@ -128,7 +128,7 @@ fn example(code: &Code) -> Result<String, String> {
         "S4028" => {
             let text = fs::read_to_string(folder().join("S4028.composite")).unwrap();
             let found = Project::new().in_memory().text("fleet.composite", text).compile(&registry());
-            let place = found.output.unwrap().networks.get("Robot001", "passwordFile").unwrap();
+            let place = found.output.unwrap().places.get("Robot001", "passwordFile").unwrap();
             let message = "component `Robot001`, property `passwordFile`: other users can read or change `robots.password`: \
                 restrict it with `chmod 600`";
             let one = Diagnostic::new(&codes::NETWORK_FILE, place, message)
@@ -138,7 +138,7 @@ fn example(code: &Code) -> Result<String, String> {
         "S4031" => {
             let text = fs::read_to_string(folder().join("S4031.composite")).unwrap();
             let found = Project::new().in_memory().text("fleet.composite", text).compile(&registry());
-            let place = found.output.unwrap().networks.get("Robot001", "url").unwrap();
+            let place = found.output.unwrap().places.get("Robot001", "url").unwrap();
             let message = "component `Robot001` is on the network `mqtt://localhost:1883`, but there is no transport for urls \
                 with `mqtt://`; those that were found serve `host:port`, `tls://`";
             let one = Diagnostic::new(&codes::NO_TRANSPORT, place, message)
