@@ -6,7 +6,7 @@ use saoms_api::host::cdr;
 
 use super::incoming::Incoming;
 use super::wire::{Again, Covered};
-use super::{Action, Destination, Exchange, LATENESS, LONGEST_WAIT, News};
+use super::{Action, Destination, Exchange, LATENESS, LONGEST_WAIT};
 
 /// Messages that are sent again for one request, at most.
 const MOST_AGAIN: usize = 1_024;
@@ -47,8 +47,6 @@ impl Exchange {
     pub fn answer(&mut self, again: &Again) {
         let Some((topic, outgoing)) = self.outgoing.get_key_value(again.topic.as_str()) else { return };
         let (topic, is_state, newest) = (Arc::clone(topic), outgoing.is_state(), outgoing.last);
-        // Of events that are older than all that are kept, signs of life say that they are lost.
-        let first = if is_state { again.first } else { again.first.max(outgoing.oldest()) };
         let (mut size, mut last) = (0, again.last);
         let mut found = Vec::new();
         for sent in outgoing.between(again.first, again.last) {
@@ -59,37 +57,28 @@ impl Exchange {
             size += sent.bytes.len();
             found.push(sent.clone());
         }
-        let is_lacking = outgoing.lacks_between(first, last);
         let numbers = found.iter().map(|sent| sent.number).collect();
         for sent in found {
             self.put_message(Destination::Again(again.reader, Arc::clone(&topic)), is_state, sent);
         }
-        if is_state || is_lacking {
+        if is_state {
             let (program, last) = (self.settings.program, last.min(newest));
-            let covered = Covered { program, topic: topic.to_string(), first, last, numbers };
+            let covered = Covered { program, topic: topic.to_string(), first: again.first, last, numbers };
             let to = Destination::Covered(again.reader);
             self.actions.push(Action::Put { to, bytes: cdr::encode(&covered).into() });
         }
     }
 
-    /// Another program says which of the messages it has that this one asked for: of a state topic the others are
-    /// outdated, and of an event topic they are lost.
+    /// Another program says which messages of a state topic are outdated.
     pub fn cover(&mut self, covered: &Covered, now: u64) {
-        let Some((topic, own)) = self.reads.get_key_value(covered.topic.as_str()) else { return };
-        let Some(peer) = self.peers.get_mut(&covered.program) else { return };
-        let Some(incoming) = peer.incoming.get_mut(topic) else { return };
-        if own.is_state {
-            incoming.skip_outdated(covered);
-            return note_missing(incoming, now);
+        // No event is outdated.
+        if self.reads.get(covered.topic.as_str()).is_none_or(|own| !own.is_state) {
+            return;
         }
-        let (count, ready) = incoming.skip_lost(covered);
+        let peer = self.peers.get_mut(&covered.program);
+        let Some(incoming) = peer.and_then(|peer| peer.incoming.get_mut(covered.topic.as_str())) else { return };
+        incoming.skip_outdated(covered);
         note_missing(incoming, now);
-        let (program, name, topic) = (covered.program, Arc::clone(&peer.name), Arc::clone(topic));
-        if count > 0 {
-            self.has_news = true;
-            self.actions.push(Action::Tell(News::Lost { program, name, topic: Arc::clone(&topic), count }));
-        }
-        self.deliver(program, &topic, ready);
     }
 }
 

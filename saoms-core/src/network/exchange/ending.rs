@@ -92,6 +92,8 @@ impl Exchange {
         let unreceived: Vec<Action> = unreceived.chain(not_kept).collect();
         self.actions.extend(unreceived);
         self.remember();
+        // What found no room counts as lost where this program is heard last.
+        self.outgoing.values_mut().for_each(|outgoing| _ = outgoing.number_owed());
         let alive = self.sign_of_life(true);
         self.put_alive(&alive);
     }

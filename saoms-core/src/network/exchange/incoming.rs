@@ -43,8 +43,7 @@ pub(super) struct Incoming {
     pub(super) done: u64,
     /// The number of the last message that the sender is known to have sent.
     pub(super) last: u64,
-    /// Those that came before an earlier one. Of a state topic their content has been delivered; events without content
-    /// are lost.
+    /// Those that came before an earlier one. Of a state topic their content has been delivered.
     waiting: BTreeMap<u64, Option<Arrived>>,
     /// Of a state topic, messages that are outdated: the number of the first of each stretch, with that of the last.
     outdated: BTreeMap<u64, u64>,
@@ -190,21 +189,6 @@ impl Incoming {
         self.next = number;
         ready.extend(self.advance());
         (missing, ready)
-    }
-
-    /// Does not wait for events that the sender does not have any more, of those that were asked for. Gives their number,
-    /// and what can be delivered now.
-    pub(super) fn skip_lost(&mut self, covered: &Covered) -> (u64, Vec<Arrived>) {
-        let last = covered.last.min(self.last).min(self.asked_up_to);
-        let mut count = 0;
-        for number in covered.first.max(self.next)..=last {
-            if self.next != 0 && covered.numbers.binary_search(&number).is_err() && !self.waiting.contains_key(&number)
-            {
-                self.waiting.insert(number, None);
-                count += 1;
-            }
-        }
-        (count, self.advance())
     }
 
     /// Does not wait for messages of a state topic that are outdated: of those that the sender is known to have sent.

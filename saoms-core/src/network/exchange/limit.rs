@@ -11,8 +11,9 @@ use super::outgoing::Outgoing;
 use super::peer::{Peer, Reading};
 
 impl Exchange {
-    /// Forgets events that all readers have received.
+    /// Forgets events that all readers have received. Where none is left, they learn of those that found no room.
     pub(super) fn forget_received(&mut self) {
+        let mut has_numbered = false;
         for (topic, outgoing) in &mut self.outgoing {
             let needed = self.peers.values().filter_map(|peer| peer.needs(topic)).min();
             if let Some(cells) = &mut outgoing.cells {
@@ -22,34 +23,19 @@ impl Exchange {
                 cells.forget(needed.saturating_sub(1));
             }
             outgoing.forget_before(needed.unwrap_or(outgoing.last + 1));
+            // A number behind kept events would be asked for, and a sign of life overtakes those that are on their way.
+            has_numbered |= outgoing.size == 0 && outgoing.number_owed();
         }
-    }
-
-    /// Bytes of the events that are kept.
-    fn kept_events(&self) -> usize {
-        self.outgoing.values().filter(|one| !one.is_state()).map(|outgoing| outgoing.size).sum()
-    }
-
-    /// True if another event of so many bytes finds no room, since events are kept that a state folder has accepted, and for
-    /// programs that are there.
-    pub(super) fn is_full_with(&self, bytes: usize) -> bool {
-        let kept = if self.settings.memory.is_some() { self.kept_events() } else { 0 };
-        kept > 0 && kept + bytes > self.settings.limit && self.most_kept_for().is_none()
-    }
-
-    /// The event of this number, which is about to leave, is lost for want of room: readers learn it when they ask for
-    /// it.
-    pub(super) fn lose(&mut self, topic: &Arc<str>, number: u64) {
-        *self.overflow.entry(Arc::clone(topic)).or_default() += 1;
-        let outgoing = self.outgoing.get_mut(topic);
-        outgoing.into_iter().for_each(|outgoing| outgoing.last = outgoing.last.max(number));
-        self.has_news = true;
+        if has_numbered {
+            self.say_soon();
+        }
     }
 
     /// Gives up programs that are away, and then events, when too much is kept.
     pub(super) fn keep_within_limit(&mut self) {
         loop {
-            if self.kept_events() <= self.settings.limit {
+            let size: usize = self.outgoing.values().filter(|one| !one.is_state()).map(|outgoing| outgoing.size).sum();
+            if size <= self.settings.limit {
                 return;
             }
             if let Some(program) = self.most_kept_for() {
@@ -134,11 +120,9 @@ impl Exchange {
         let events = self.outgoing.iter().filter(|(_, outgoing)| !outgoing.is_state());
         events.filter_map(|(topic, outgoing)| {
             let Reading { next, counted, .. } = peer.reading.get(topic).filter(|_| !peer.is_over)?;
-            // What was lost for want of room has been counted for all; for who was given up, nothing is kept since.
-            let count = match peer.is_given_up {
-                true => (outgoing.last + 1).saturating_sub(*counted.max(next)),
-                false => outgoing.count_from(*next),
-            };
+            // What was forgotten for want of room before it was given up has been counted for all.
+            let first = if peer.is_given_up { *counted } else { outgoing.oldest() };
+            let count = (outgoing.last + 1).saturating_sub(first.max(*next));
             (count > 0).then_some((topic, count))
         })
     }

@@ -188,18 +188,17 @@ impl Exchange {
             // Readers that were heard before read it from its first message on.
             self.say_soon();
         }
-        let is_full = !is_state && self.is_full_with(bytes.len());
         let Some(outgoing) = self.outgoing.get_mut(topic) else { return };
         let (component, bytes) = (Arc::clone(component), bytes.into());
-        // Events between it and the last one found no room on their way here, which was told.
         let number = number.map_or(outgoing.last + 1, |number| number.max(outgoing.last + 1));
+        if number > outgoing.last + 1 {
+            // Those before it found no room on their way here, which was told.
+            let count = outgoing.skip_before(number);
+            *self.overflow.entry(Arc::clone(topic)).or_default() += count;
+        }
         let cells = outgoing.place(&(Arc::clone(&component), key), place.map(cell_of));
         let sent = Sent { number, component, to, key, sent, schema, cause, bytes, cells };
-        let is_kept = is_state || self.peers.values().any(|peer| peer.needs(topic).is_some());
-        if is_kept && is_full {
-            return self.lose(topic, number);
-        }
-        if is_kept {
+        if is_state || self.peers.values().any(|peer| peer.needs(topic).is_some()) {
             outgoing.keep(sent.clone());
         } else {
             outgoing.last = sent.number;
@@ -215,12 +214,17 @@ impl Exchange {
     }
 
     /// So many events of a topic found no room on their way here, which was told, after all that were sent before:
-    /// their readers learn it when they ask for them. The last one has this number in the state folder.
+    /// their readers learn it. The last one has this number in the state folder. Without a number they learn it once
+    /// they have received what was sent before: it is on its way, or may have to be sent again.
     pub fn skip(&mut self, topic: &Arc<str>, count: u64, last: Option<u64>) {
         let outgoing = self.outgoing.entry(Arc::clone(topic)).or_insert_with(|| Outgoing::new(false));
-        let last = last.unwrap_or_else(|| outgoing.last.saturating_add(count));
+        let Some(last) = last else {
+            outgoing.owed = outgoing.owed.saturating_add(count);
+            return self.forget_received();
+        };
         if last > outgoing.last {
-            outgoing.last = last;
+            let count = outgoing.skip_before(last + 1);
+            *self.overflow.entry(Arc::clone(topic)).or_default() += count;
             self.say_soon();
         }
     }

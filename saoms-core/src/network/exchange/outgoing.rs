@@ -68,6 +68,8 @@ pub(super) struct Outgoing {
     pub(super) before: u64,
     /// The number of the first event that may be in the state folder.
     pub(super) stored: u64,
+    /// Events that found no room on their way here, without numbers yet: readers hear of them once nothing is kept.
+    pub(super) owed: u64,
 }
 
 impl Outgoing {
@@ -76,14 +78,14 @@ impl Outgoing {
             true => Kept::States { newest: BTreeMap::new(), numbers: HashMap::new() },
             false => Kept::Events(VecDeque::new()),
         };
-        Outgoing { last: 0, kept, size: 0, cells: None, before: 0, stored: 1 }
+        Outgoing { last: 0, kept, size: 0, cells: None, before: 0, stored: 1, owed: 0 }
     }
 
     pub(super) fn is_state(&self) -> bool {
         matches!(self.kept, Kept::States { .. })
     }
 
-    /// Keeps a message, whose number is the next one, or a later one: events in between are lost.
+    /// Keeps a message, whose number is the next one.
     pub(super) fn keep(&mut self, sent: Sent) {
         self.last = sent.number;
         self.size += sent.size();
@@ -136,16 +138,19 @@ impl Outgoing {
         count
     }
 
-    /// Number of the kept events from a number on.
-    pub(super) fn count_from(&self, first: u64) -> u64 {
-        let Kept::Events(events) = &self.kept else { return 0 };
-        (events.len() - events.partition_point(|sent| sent.number < first)) as u64
+    /// The next message has this number: those before it that were not kept are lost. So are kept ones before them,
+    /// since nothing says that some in between are missing. Gives how many these were.
+    pub(super) fn skip_before(&mut self, number: u64) -> u64 {
+        let count = self.forget_before(number);
+        self.last = self.last.max(number - 1);
+        count
     }
 
-    /// True if events of these numbers are lost: they are not kept, although an earlier or later one is.
-    pub(super) fn lacks_between(&self, first: u64, last: u64) -> bool {
-        let (first, last) = (first.max(self.oldest()), last.min(self.last));
-        !self.is_state() && first <= last && self.between(first, last).count() as u64 != last - first + 1
+    /// Gives numbers to events that found no room, after all others. True if there are some: readers have to learn it.
+    pub(super) fn number_owed(&mut self) -> bool {
+        let owed = std::mem::take(&mut self.owed);
+        self.last = self.last.saturating_add(owed);
+        owed > 0
     }
 
     /// The size of the kept events from a number up to before another one, in bytes, as far as they are of the same

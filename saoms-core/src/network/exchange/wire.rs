@@ -194,8 +194,7 @@ pub struct Again {
     pub last: u64,
 }
 
-/// The answer to a request for messages: those of them that were sent. The others of a state topic are outdated, and
-/// those of an event topic are lost; where none is, nobody has to say so.
+/// The answer to a request for messages of a state topic: those of them that are not outdated, which were sent.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(name = "saoms_msgs/msg/Covered")]
 pub struct Covered {
@@ -207,7 +206,7 @@ pub struct Covered {
     pub first: u64,
     /// The number of the last message of this answer.
     pub last: u64,
-    /// Those that were sent, in order.
+    /// Those that are not outdated, in order.
     pub numbers: Vec<u64>,
 }
 

@@ -3,7 +3,6 @@
 use proptest::prelude::*;
 
 use super::lossy::{Lossy, MILLISECOND, Weather};
-use crate::network::exchange::KeptEvent;
 
 /// The numbers that a component has given to its events, as programs received them, in this order.
 fn heard(network: &Lossy, senders: &[usize], readers: &[usize]) -> Vec<u64> {
@@ -283,64 +282,4 @@ proptest! {
         prop_assert_eq!(heard(&network, &senders, &[1]), (1..=last).collect::<Vec<u64>>());
         prop_assert_eq!(told(&network, 1, &WRONG), Vec::<String>::new());
     }
-}
-
-/// So many events of a program are in its state folder, and find no room on their way to the network.
-fn lose(network: &mut Lossy, program: usize, count: u64) {
-    let sender = &mut network.programs[program];
-    let events = sender.folder.as_mut().unwrap().events.entry("EVENTS".into()).or_default();
-    for _ in 0..count {
-        let last = events.last_key_value().map_or(1, |(last, _)| last + 1);
-        events.insert(last, KeptEvent::default());
-        sender.exchange.skip(&"EVENTS".into(), 1, Some(last));
-    }
-}
-
-#[test]
-fn an_event_without_room_costs_none_that_the_state_folder_has_accepted_before() {
-    let mut network = pair();
-    network.join();
-    network.run(500 * MILLISECOND);
-    // One of the readers is away, so that the sender keeps all from the first one on.
-    network.programs[2].is_stopped = true;
-    network.is_cut = true;
-    (0..3).for_each(|_| network.send(0, "EVENTS"));
-    lose(&mut network, 0, 2);
-    (0..2).for_each(|_| network.send(0, "EVENTS"));
-    network.is_cut = false;
-    network.run(1_000 * MILLISECOND);
-    assert_eq!(heard(&network, &[0], &[1]), (1..=5).collect::<Vec<u64>>());
-    lose(&mut network, 0, 3_000);
-    network.send(0, "EVENTS");
-    network.run(3_000 * MILLISECOND);
-    network.programs[2].is_stopped = false;
-    network.run(3_000 * MILLISECOND);
-    for reader in [1, 2] {
-        assert_eq!(heard(&network, &[0], &[reader]), (1..=6).collect::<Vec<u64>>(), "reader {reader}");
-        assert_eq!(network.programs[reader].lost, 3_002, "{:?}", network.told(reader));
-    }
-    assert!(network.programs[0].exchange.is_complete());
-    assert_eq!(network.programs[0].lost, 0, "it has told that where they found no room: {:?}", network.told(0));
-}
-
-#[test]
-fn beyond_the_limit_new_events_are_lost_and_none_that_the_state_folder_has_accepted_before() {
-    let mut network = Lossy::new(0, Weather::calm(), 1);
-    network.join_with_folder();
-    network.join_with_folder();
-    network.run(500 * MILLISECOND);
-    // The reader is there, and carries out nothing of what it receives.
-    network.is_busy = true;
-    for _ in 0..2_000 {
-        network.send(0, "EVENTS");
-        network.run(MILLISECOND);
-    }
-    let kept = heard(&network, &[0], &[1]).len() as u64;
-    assert!((500..2_000).contains(&kept), "{kept}");
-    network.is_busy = false;
-    network.run(1_000 * MILLISECOND);
-    network.send(0, "EVENTS");
-    network.run(1_000 * MILLISECOND);
-    assert_eq!(heard(&network, &[0], &[1]), (1..=kept).chain([2_001]).collect::<Vec<u64>>());
-    assert_eq!([0, 1].map(|end| network.programs[end].lost), [2_000 - kept; 2], "{:?}", network.told(0));
 }
