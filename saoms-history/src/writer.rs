@@ -111,8 +111,8 @@ pub(crate) fn refused(path: &Path, error: &rusqlite::Error) -> HistoryError {
     HistoryError::Database { path: path.to_owned(), message: error.to_string() }
 }
 
-/// What asks for the rows that earlier runs with the same state wrote to a table. `CROSS JOIN` has SQLite walk through the
-/// table, in whose order the rows are wanted: it would sort all of them otherwise.
+/// What asks for the rows that earlier runs with the same state wrote to a table. `CROSS JOIN` has SQLite walk through
+/// the table, in whose order the rows are wanted: it would sort all of them otherwise.
 pub(crate) fn earlier(table: &HistoryTable) -> String {
     let columns: String = table.columns.iter().map(|column| format!(", t.{}", column.name)).collect();
     format!(

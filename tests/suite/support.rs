@@ -98,8 +98,8 @@ pub(crate) fn ask(socket: &Path, method: &str, path: &str, body: &str) -> io::Re
     Ok(serde_json::from_str(body)?)
 }
 
-/// Sets what a process does on a hangup. Who starts the tests may ignore hangups, as `nohup` does, and processes inherit
-/// that.
+/// Sets what a process does on a hangup. Who starts the tests may ignore hangups, as `nohup` does, and processes
+/// inherit that.
 pub(crate) fn on_hangup(run: &mut Command, action: libc::sighandler_t) {
     // SAFETY: the call between fork and exec is one that signal handlers may make.
     unsafe {

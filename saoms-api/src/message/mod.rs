@@ -21,7 +21,8 @@ pub use topic::{KnownPublisher, Publisher, Subscription, Topic};
 /// | attribute | meaning |
 /// | --- | --- |
 /// | `key = "field"` | the integer field that is the key of a state topic |
-/// | `place = "block"` | the field that is the block of the message, a struct with `#[field(pair)]`: subscriptions can receive a [region](crate::Context::set_region) alone |
+/// | `place = "block"` | the field that is the block of the message, a struct with `#[field(pair)]`: subscriptions can
+/// receive a [region](crate::Context::set_region) alone |
 /// | `speaker("robot", unless(stage = "REQUEST"))` | an integer field that [names the speaker](#who-speaks) |
 /// | `name = "sensor_msgs/msg/LaserScan"` | the name, if it is not that of the struct |
 /// | `constants(NO_FIX: i8 = -1, FIX: i8 = 0)` | constants of the struct, which stand in the schema, too |

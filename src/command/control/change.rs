@@ -161,7 +161,9 @@ fn show(fleet: &RunningFleetArguments, answer: &Value) -> Exit {
                 print(&words(plan, &answer["applied"]));
             }
             match failure["error"].as_str() {
-                Some(_) if !refusals.is_empty() => eprint(&format!("{}{}", refusals.concat(), help(plan, failure))),
+                Some(_) if failure["refused"] == true && !refusals.is_empty() => {
+                    eprint(&format!("{}{}", refusals.concat(), help(plan, failure)))
+                }
                 Some(error) => eprint(&format!("error: {}\n{}", one_line(error), help(plan, failure))),
                 None if let Some(why) = uncommitted => {
                     eprint(&format!("error: the fleet has changed: {}\n", one_line(why)));

@@ -279,7 +279,10 @@ impl Asking<'_> {
         let is_over = || is_refused.load(Ordering::Relaxed) || (given.is_over)();
         let wait = Wait { is_over: &is_over, ..*given };
         thread::scope(|scope| {
-            let opening = scope.spawn(|| who.opened(transport, port, handle, &wait));
+            let name = "saoms-network".to_owned();
+            let opening =
+                thread::Builder::new().name(name).spawn_scoped(scope, || who.opened(transport, port, handle, &wait));
+            let opening = opening.map_err(|error| who.error(&format!("the system cannot create a thread: {error}")))?;
             let mut refused = None;
             while !opening.is_finished() {
                 if refused.is_none() {

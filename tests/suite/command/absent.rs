@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::memory::start;
 use super::state::crossing;
-use crate::support::{Program, empty_folder, saoms_in, text};
+use crate::support::{PATIENCE, Program, empty_folder, saoms_in, text};
 
 /// The fleet, and the same without its fourth robot.
 fn fleets() -> [String; 2] {
@@ -36,7 +36,7 @@ fn others_do_what_a_robot_had_begun_that_the_fleet_has_no_more() {
     let program = start(&folder);
     let since = Instant::now();
     while !fs::read_to_string(folder.join("told")).unwrap().contains("Robot4         collected luggage 1 ") {
-        assert!(since.elapsed() < Duration::from_secs(20));
+        assert!(since.elapsed() < PATIENCE);
         sleep(Duration::from_millis(5));
     }
     drop::<Program>(program);

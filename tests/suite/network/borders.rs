@@ -1,4 +1,5 @@
-//! Zones and robots of several programs keep the borders of the zones: those of all change at one instant, or not at all.
+//! Zones and robots of several programs keep the borders of the zones: those of all change at one instant, or not at
+//! all.
 
 use std::fs;
 

@@ -303,8 +303,7 @@ impl Crew {
             LuggageStage::Release | LuggageStage::Refused => {
                 let left = self.left.entry((luggage, robot)).or_default();
                 *left = sent.max(*left);
-                // It may have taken it over from another robot since.
-                self.members.get(&robot).is_some_and(|member| member.job == Some(luggage) && member.took_at > sent)
+                false
             }
             LuggageStage::Delivered | LuggageStage::GivenUp => {
                 let of_luggage = self.left.range((luggage, 0)..=(luggage, u32::MAX)).map(|(key, _)| *key);

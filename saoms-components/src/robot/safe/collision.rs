@@ -143,8 +143,8 @@ impl Loop for SafeCollision {
 }
 
 impl RobotKnowledge {
-    /// Which robot goes first of this one and the one that it waits for, and why: by the rules of `Traffic`, or by those
-    /// of the zone, which says why itself.
+    /// Which robot goes first of this one and the one that it waits for, and why: by the rules of `Traffic`, or by
+    /// those of the zone, which says why itself.
     fn conflict_about(&self, Wait { block, robot }: Wait, since: Time) -> Conflict {
         let (first, rule, lent_by) = if self.zones.is_some() {
             (robot, Precedence::Zone, 0)

@@ -72,7 +72,8 @@ pub struct Entered {
 }
 
 impl Entrance {
-    /// Takes in another network, which a transport has joined, and that delivers to the port. All are asked from now on.
+    /// Takes in another network, which a transport has joined, and that delivers to the port. All are asked from now
+    /// on.
     ///
     /// `is_fresh`: the network was not there a moment ago, or has no router, so that others may not be connected yet.
     /// That is so for a router in any case, and the router says it to others while it has just begun.
@@ -93,8 +94,7 @@ impl Entrance {
         if !settings.components.is_empty() {
             session.subscribe(&key::runs(settings.program), RUNS)?;
         }
-        // What others said of the networks before may be long ago.
-        self.all.iter_mut().for_each(|one| one.since = now);
+        self.all.iter_mut().for_each(|one| one.wait_anew(now));
         let wait = if is_fresh || session.is_router() { SETTLES } else { ANSWERS };
         self.all.push(Entering {
             components: settings.components.iter().cloned().collect(),
@@ -185,6 +185,11 @@ impl Entering {
         self.link.is_down && longest.is_some_and(|longest| now - self.down_since >= longest)
     }
 
+    /// What others said before may be long ago.
+    fn wait_anew(&mut self, now: Instant) {
+        (self.since, self.wait) = (now, self.wait.min(SETTLES));
+    }
+
     fn ask(&mut self, now: Instant) {
         if self.components.is_empty() || self.asked.is_some_and(|asked| now - asked < AGAIN) {
             return;
@@ -198,12 +203,12 @@ impl Entering {
 
     fn hear(&mut self, now: Instant, tell: &mut impl FnMut(String)) -> Result<(), String> {
         if now - std::mem::replace(&mut self.looked, now) > HELD_UP {
-            self.since = now;
+            self.wait_anew(now);
         }
         self.watch_link(now, tell);
         for frame in self.entered.port.take_frames() {
             if frame.token != RUNS && frame.token != BEGINS {
-                // It comes again.
+                // Signs of life and what is missing come again; commands are given again by who has no answer.
                 continue;
             }
             let Ok(said) = cdr::decode::<Begins>(&frame.message) else { continue };

@@ -67,6 +67,8 @@ pub(super) struct Member<F> {
     pub(super) patience: u64,
     /// Time since which no program sees work left.
     done_since: Option<u64>,
+    /// Since when nothing but events of others is missing.
+    missing_since: Option<u64>,
     /// True if it was told that programs are waited for.
     has_told_who_lacks: bool,
     /// True if it was told that programs are waited for which lack events.
@@ -121,6 +123,7 @@ impl<F: Fleet> Member<F> {
             program: settings.program,
             patience: settings.patience,
             done_since: None,
+            missing_since: None,
             has_told_who_lacks: false,
             has_told_awaited: false,
             linger: Duration::from_nanos(settings.linger),
@@ -281,10 +284,17 @@ impl<F: Fleet> Member<F> {
         if is_agreed {
             self.tell_awaited(End::Agreed, false);
         }
-        let is_done = is_agreed && self.exchange.is_complete() && self.undelivered.is_empty();
+        let is_quiet = is_agreed && self.exchange.is_complete() && self.undelivered.is_empty();
+        let missing_since = self.missing_since.unwrap_or(now);
+        self.missing_since = (is_quiet && !self.exchange.has_received_all()).then_some(missing_since);
+        if self.missing_since.is_some() && now - missing_since >= self.exchange.settings().linger {
+            self.exchange.give_up_missing();
+            self.missing_since = None;
+        }
+        // What has just arrived is to be read before the end.
+        let is_done = is_quiet && self.missing_since.is_none();
         let since = self.done_since.filter(|_| is_done);
-        let has_time = since.is_some_and(|since| now - since >= self.patience);
-        self.fleet.agree(has_time && self.exchange.has_received_all());
+        self.fleet.agree(since.is_some_and(|since| now - since >= self.patience));
         self.done_since = is_done.then(|| since.unwrap_or(now));
     }
 

@@ -57,6 +57,24 @@ impl Exchange {
         incoming.all(|(topic, incoming)| incoming.missing().is_none() || !is_event(topic))
     }
 
+    /// Counts events as lost that programs have sent, are there, and did not send again for long.
+    pub fn give_up_missing(&mut self) {
+        let mut given_up = Vec::new();
+        for (program, peer) in self.peers.iter_mut().filter(|(_, peer)| peer.is_reachable && !peer.is_over) {
+            for (topic, incoming) in &mut peer.incoming {
+                let is_event = self.reads.get(topic).is_some_and(|own| !own.is_state);
+                if let Some(count) = incoming.lacks().filter(|_| is_event) {
+                    let (_, ready) = incoming.skip_to(incoming.last + 1);
+                    given_up.push((*program, Arc::clone(&peer.name), Arc::clone(topic), count, ready));
+                }
+            }
+        }
+        for (program, name, topic, count, ready) in given_up {
+            self.actions.push(Action::Tell(News::Lost { program, name, topic: Arc::clone(&topic), count }));
+            self.deliver(program, &topic, ready);
+        }
+    }
+
     fn is_agreed(&self) -> bool {
         // Who said that all is done, and vanished, has said so: its last sign of life may be lost.
         // One whose components run elsewhere by now is about to end.

@@ -128,8 +128,8 @@ impl Change<'_> {
         }
     }
 
-    /// Shuts down the components that the change has removed, those that call others first. As at the end of a run, each
-    /// serves calls until its turn.
+    /// Shuts down the components that the change has removed, those that call others first. As at the end of a run,
+    /// each serves calls until its turn.
     pub(super) fn shut_down_removed(&mut self, now: u64) {
         let leaving = std::mem::take(&mut self.leaving);
         let numbers: Vec<u32> = leaving.iter().map(|(number, _)| *number).collect();
@@ -158,6 +158,8 @@ impl Change<'_> {
         let taken = loop {
             if !engine.slots[number as usize].is_alive() {
                 // The run has begun to end, or its code has failed in a call.
+                engine.leave_topics(number, now);
+                engine.forget_vote(number, now);
                 engine.forget(number);
                 return self.shared.release(engine);
             }

@@ -1,5 +1,5 @@
-//! Robots that leave with a job: they finish it, or hand it over where their time for that is over. Nothing is lost, and
-//! nothing is delivered twice.
+//! Robots that leave with a job: they finish it, or hand it over where their time for that is over. Nothing is lost,
+//! and nothing is delivered twice.
 
 use std::sync::Arc;
 use std::thread::{scope, sleep};

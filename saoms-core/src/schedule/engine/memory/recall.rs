@@ -419,6 +419,10 @@ impl Engine {
             let slot = &self.slots[index as usize];
             let name = Arc::clone(&slot.name);
             let Some(known) = recalled.components.get(&*name).filter(|_| !elsewhere.contains(&*name)) else { continue };
+            if !known.form.is_scheduled {
+                // It has said its last words.
+                continue;
+            }
             let said = recalled.states.iter().filter(|(_, form)| *form.sender == *name);
             let said: Vec<(&str, &[u8])> = said.map(|(topic, form)| (&**topic, &form.bytes[..])).collect();
             if self.tell_absence(&name, &known.form.site, &said, now) {

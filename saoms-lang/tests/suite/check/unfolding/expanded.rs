@@ -18,7 +18,8 @@ fn expand(texts: &[&str]) -> (Assembly, String) {
     let Some(text) = expanded(&compilation) else {
         panic!("{}\n{}", human_of(&compilation), texts.join("\n"));
     };
-    (compilation.output.unwrap(), text)
+    // What is said elsewhere stands at other places.
+    (Assembly { places: Default::default(), ..compilation.output.unwrap() }, text)
 }
 
 /// Expands, and holds the result to what it has to be: the same fleet, and the same when it is expanded again.
