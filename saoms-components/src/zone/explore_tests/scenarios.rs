@@ -54,8 +54,8 @@ const ROW: Scenario = Scenario {
     ..SQUARE
 };
 
-/// Two robots, of which each has to enter the zone of the other one. Late messages never overtake newer ones.
-const ZONES: Scenario = Scenario { name: "zones", zones: &[(0, 1), (1, 1)], arriving: 1, ..SQUARE };
+/// Two robots, of which each has to enter the zone of the other one.
+const ZONES: Scenario = Scenario { name: "zones", zones: HALVES, ..SQUARE };
 
 /// Two robots, of which the first one drives into another zone, and the second one follows it.
 const TRAIN: Scenario = Scenario {
@@ -69,6 +69,30 @@ const TRAIN: Scenario = Scenario {
 /// Two robots that drive in the same direction: each has to enter two blocks where the other one may have been.
 const QUEUE: Scenario =
     Scenario { name: "queue", map: "....", zones: &[(0, 4)], robots: &[((0, 0), (2, 0)), ((1, 0), (3, 0))], ..SQUARE };
+
+/// Three robots in two zones, of which each can only go where the next one was, and two drive over the border.
+const ACROSS: Scenario = Scenario { name: "across", zones: HALVES, ..ROUND };
+
+/// Three robots that drive in the same direction, over the border of two zones.
+const CONVOY: Scenario = Scenario {
+    name: "convoy",
+    map: "....",
+    zones: &[(0, 2), (2, 2)],
+    robots: &[((0, 0), (1, 0)), ((1, 0), (2, 0)), ((2, 0), (3, 0))],
+    ..SQUARE
+};
+
+#[test]
+fn three_robots_in_two_zones_do_not_collide_or_stand_still() {
+    explore(&[CONVOY, ACROSS]);
+}
+
+/// Here late messages never overtake newer ones.
+#[test]
+fn one_of_three_robots_and_one_of_two_zones_that_fail_lead_to_no_collision_and_no_standstill() {
+    let faults = [Faults { robots: 1, ..NONE }, Faults { zones: 1, ..NONE }];
+    explore(&faults.map(|faults| Scenario { faults, arriving: 1, ..ACROSS }));
+}
 
 #[test]
 fn messages_that_are_lost_late_or_come_again_lead_to_no_collision_and_no_standstill() {
@@ -88,22 +112,21 @@ fn blocks_that_are_granted_ahead_beside_other_robots_lead_to_no_collision_and_no
 #[test]
 fn robots_that_lose_their_memory_lead_to_no_collision_and_no_standstill() {
     let faults = Faults { robots: 1, ..NONE };
-    let train = Scenario { faults, arriving: 1, ..TRAIN };
+    let train = Scenario { faults, ..TRAIN };
     explore(&[Scenario { faults, ..BORDER }, Scenario { faults, ..ROUND }, Scenario { faults, ..SQUARE }, train]);
 }
 
 #[test]
 fn zones_that_lose_their_record_lead_to_no_collision_and_no_standstill() {
     let faults = Faults { zones: 1, ..NONE };
-    let train = Scenario { faults, arriving: 1, ..TRAIN };
+    let train = Scenario { faults, ..TRAIN };
     explore(&[Scenario { faults, ..BORDER }, Scenario { faults, ..ROUND }, Scenario { faults, ..SQUARE }, train]);
 }
 
 #[test]
 fn robots_that_are_taken_off_the_floor_lead_to_no_collision_and_no_standstill() {
     let faults = Faults { gone: 1, ..NONE };
-    explore(&[QUEUE, BORDER].map(|scenario| Scenario { faults, ..scenario }));
-    explore(&[SQUARE, ROUND, TRAIN].map(|scenario| Scenario { faults, arriving: 1, ..scenario }));
+    explore(&[QUEUE, BORDER, SQUARE, ROUND, TRAIN].map(|scenario| Scenario { faults, ..scenario }));
 }
 
 #[test]
@@ -151,7 +174,7 @@ const ALONE: Scenario = Scenario { robots: &[((0, 0), (1, 1))], ..SQUARE };
 fn a_zone_that_is_divided_leads_to_no_collision_and_no_standstill() {
     explore(&[
         Scenario { name: "divided, alone", drawings: &[EAST], ..ALONE },
-        Scenario { name: "divided, new numbers, alone", drawings: &[BOTH], arriving: 1, ..ALONE },
+        Scenario { name: "divided, new numbers, alone", drawings: &[BOTH], ..ALONE },
     ]);
 }
 
@@ -159,14 +182,14 @@ fn a_zone_that_is_divided_leads_to_no_collision_and_no_standstill() {
 fn zones_that_become_one_lead_to_no_collision_and_no_standstill() {
     explore(&[
         Scenario { name: "united, alone", zones: HALVES, drawings: &[UNITED], ..ALONE },
-        Scenario { name: "united, divided, alone", zones: HALVES, drawings: &[UNITED, EAST], arriving: 1, ..ALONE },
+        Scenario { name: "united, divided, alone", zones: HALVES, drawings: &[UNITED, EAST], ..ALONE },
     ]);
 }
 
 #[test]
 fn a_border_that_moves_leads_to_no_collision_and_no_standstill() {
     explore(&[
-        Scenario { name: "moved, alone", drawings: &[MOVED], arriving: 1, ..BORDER },
+        Scenario { name: "moved, alone", drawings: &[MOVED], ..BORDER },
         Scenario { name: "moved twice, alone", drawings: &[MOVED, AGAIN], asks: false, arriving: 1, ..BORDER },
         Scenario { name: "moved", drawings: &[MOVED], asks: false, arriving: 1, ..TRAIN },
     ]);
