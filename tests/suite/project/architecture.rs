@@ -128,6 +128,11 @@ fn crates_know_only_what_they_may() {
     assert_eq!(dependencies("saoms-tools"), ["saoms-api", "saoms-lang"], "no tool runs a fleet");
     assert_eq!(dependencies("saoms-control"), ["saoms-api", "saoms-core", "saoms-lang"], "operators reach any fleet");
     assert_eq!(dependencies("saoms-history"), ["saoms-api", "saoms-core"], "any fleet has a history");
+    assert_eq!(
+        dependencies("saoms-recording"),
+        ["saoms-api", "saoms-core", "saoms-registry"],
+        "any fleet can be recorded, and a recording be read without one"
+    );
     assert_eq!(dependencies("saoms-components"), ["saoms-api"], "components know the contract alone");
 }
 
@@ -186,9 +191,10 @@ fn only_the_components_know_their_domain() {
     let templates = root().join("src/command/new");
     let is_test = |file: &Path| file.iter().any(|part| part == "tests" || part == "tests.rs");
     let mut wrong = Vec::new();
-    for source in
-        ["saoms-lang/src", "saoms-core/src", "saoms-control/src", "saoms-history/src", "saoms-tools/src", "src"]
-    {
+    for source in [
+        "saoms-lang/src", "saoms-core/src", "saoms-control/src", "saoms-history/src", "saoms-recording/src",
+        "saoms-tools/src", "src",
+    ] {
         let files = rust_files(&root().join(source));
         for file in files.iter().filter(|file| !file.starts_with(&templates) && !is_test(file)) {
             let text = fs::read_to_string(file).unwrap();
