@@ -8,6 +8,8 @@ pub struct LossCounts {
     pub log_lines: Arc<AtomicU64>,
     /// Rows of the history.
     pub history_rows: Arc<AtomicU64>,
+    /// Messages of the recording, with records of the journal and lines of the log.
+    pub recorded: Arc<AtomicU64>,
 }
 
 /// What the server counts of its clients.

@@ -12,6 +12,7 @@ pub(crate) mod lsp;
 mod man;
 mod new;
 mod query;
+mod record;
 mod report;
 mod run;
 mod schema;
@@ -59,6 +60,7 @@ enum Command {
     Why(why::WhyArguments),
     Report(report::ReportArguments),
     Query(query::QueryArguments),
+    Record(record::RecordArguments),
     View(view::ViewArguments),
     Ps(control::PsArguments),
     Status(control::StatusArguments),
@@ -102,6 +104,7 @@ pub(crate) fn execute() -> Exit {
         Command::Why(arguments) => why::why(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Query(arguments) => query::query(&arguments),
+        Command::Record(arguments) => record::record(&arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Ps(arguments) => control::ps(&arguments),
         Command::Status(arguments) => control::status(&arguments),

@@ -163,6 +163,8 @@ pub const METRICS: &[Metric] = metrics! {
         |measured, samples| samples.add(&[], measured.losses.log_lines.load(Ordering::Relaxed) as f64);
     "saoms_history_lost_total" counter [] "Rows that could not be written to the history, with alerts and messages that were lost before."
         |measured, samples| samples.add(&[], measured.losses.history_rows.load(Ordering::Relaxed) as f64);
+    "saoms_recording_lost_total" counter [] "Messages, records of the journal and lines of the log that the recording lacks."
+        |measured, samples| samples.add(&[], measured.losses.recorded.load(Ordering::Relaxed) as f64);
     "saoms_control_clients" gauge [] "Clients that are connected."
         |measured, samples| samples.add(&[], measured.clients.open.load(Ordering::Relaxed) as f64);
     "saoms_control_refused_total" counter [] "Clients that were refused, because there were too many."

@@ -9,6 +9,7 @@ use saoms_core::schedule::Speed;
 use super::control::NetworkArguments;
 use super::history::HistoryArguments;
 use super::log_lines::LogArguments;
+use super::recording::RecordingArguments;
 use crate::arguments::{FleetArguments, Format, duration, parse_size};
 
 const EXIT_CODES: &str = "\
@@ -90,6 +91,9 @@ pub(crate) struct RunArguments {
 
     #[command(flatten)]
     pub(crate) history: HistoryArguments,
+
+    #[command(flatten)]
+    pub(crate) recording: RecordingArguments,
 
     /// Read events from this file, or as they come from standard input (`-`): one scenario line each, such as `at 3s
     /// luggage (3,1) to (3,10)`; an event without a time happens at once. A wrong line is reported and ignored

@@ -17,6 +17,7 @@ mod notify;
 mod outputs;
 mod picture;
 mod picture_file;
+mod recording;
 mod reload;
 mod report_file;
 mod state;
@@ -94,7 +95,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         );
         return Exit::WrongInput;
     }
-    let Some(Prepared { assembly, networks, web, read, watched, since }) = prepared(arguments, files) else {
+    let Some(Prepared { assembly, networks, web, read, watched, texts, since }) = prepared(arguments, files) else {
         return Exit::WrongInput;
     };
     if let Err(exit) = web.judge() {
@@ -152,10 +153,15 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let style = LogStyle::of(&arguments.log, &assembly);
     let read = read.into_iter().chain(state::files(arguments)).collect();
     let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
-    let RunFiles { report, picture, timeline, journal, history, log } = files_written;
+    let RunFiles { report, picture, timeline, journal, history, recording, log } = files_written;
     let alerts: Arc<AlertList> = Arc::default();
     let history = match history.map(|path| history::open(&path, arguments, &alerts)).transpose() {
         Ok(history) => history.map(Arc::new),
+        Err(exit) => return exit,
+    };
+    let recording = recording.map(|path| recording::of(&path, arguments, (&assembly, texts), &alerts)).transpose();
+    let recording = match recording {
+        Ok(recording) => recording.map(Arc::new),
         Err(exit) => return exit,
     };
     let mut delivery = match AlertDelivery::of(arguments, &assembly.run, &alerts) {
@@ -166,11 +172,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let losses = LossCounts {
         log_lines: log.as_ref().map(LogFile::lost).unwrap_or_default(),
         history_rows: history.as_ref().map(|history| history.lost()).unwrap_or_default(),
+        recorded: recording.as_ref().map(|recording| recording.lost()).unwrap_or_default(),
     };
     // With a file, somebody wants the whole run, seen or not.
     let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
     let only_prints = journal.is_none()
         && history.is_none()
+        && recording.is_none()
         && log.is_none()
         && is_standard(&report)
         && [&picture, &timeline].into_iter().all(is_standard);
@@ -194,6 +202,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(log.map(|log| Arc::new(log) as Arc<dyn Observer>));
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(history.clone().map(|history| history as Arc<dyn Observer>));
+    observers.extend(recording.clone().map(|recording| recording as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     observers.extend(timeline.clone().map(|timeline| timeline as Arc<dyn Observer>));
@@ -221,6 +230,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         store.map_or(Ok(()), |store| handle.use_store(store))?;
         numbers.outlive(handle);
         history.iter().filter(|_| starting.is_some()).for_each(|history| history.outlive(handle));
+        recording.iter().for_each(|recording| recording.outlive(handle));
         let applied = starting.map(|starting| LastApplied::outlive(handle, starting, &arguments.fleet.files));
         alerts.outlive(handle);
         watch.iter().filter(|_| handle.recalled().is_some()).for_each(|watch| watch.goes_on());
@@ -298,6 +308,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         || timeline.is_some_and(|timeline| timeline.output.has_failed())
         || losses.log_lines.load(Ordering::Relaxed) > 0
         || history::lacks_rows(&losses)
+        || recording::lacks_messages(&losses)
     {
         return Exit::Failed;
     }
@@ -326,6 +337,8 @@ struct Prepared {
     read: Vec<PathBuf>,
     /// Those of them that say what the fleet is.
     watched: Vec<PathBuf>,
+    /// Their names and texts, for the recording.
+    texts: Vec<(String, String)>,
     /// The time at which that began.
     since: SystemTime,
 }
@@ -370,11 +383,12 @@ fn prepared(arguments: &RunArguments, files: &FleetArguments) -> Option<Prepared
     let watched = compilation.sources.open().files_read();
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.iter().chain(&arguments.faults).cloned());
+    let texts = if arguments.recording.file.is_some() { recording::texts(&compilation.sources) } else { Vec::new() };
     let assembly = compilation.output?;
     if !has_components(&assembly, "run") {
         return None;
     }
-    Some(Prepared { assembly, networks: networks?, web, read, watched, since })
+    Some(Prepared { assembly, networks: networks?, web, read, watched, texts, since })
 }
 
 /// The severities that follow from the other options of a run.

@@ -18,6 +18,7 @@ pub(super) struct RunFiles {
     pub(super) timeline: Option<Output>,
     pub(super) journal: Option<JournalFile>,
     pub(super) history: Option<PathBuf>,
+    pub(super) recording: Option<PathBuf>,
     pub(super) log: Option<LogFile>,
 }
 
@@ -45,6 +46,7 @@ impl RunFiles {
         let timeline = add("timeline", "--timeline", arguments.timeline.as_deref(), false);
         let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
         let history = add("history", "--history", arguments.history.file.as_deref(), true);
+        let recording = add("recording", "--record", arguments.recording.file.as_deref(), true);
         let log = add("log", "--log", arguments.log.log.as_deref(), true);
         let rotation = arguments.log.rotation();
         let moved = [&journal, &log].into_iter().flatten().filter(|_| rotation.is_any());
@@ -63,10 +65,13 @@ impl RunFiles {
                 log_file(asked, place, rotation, style).map_err(|error| told(asked, error)).ok()
             });
             let history = history.and_then(|(asked, place)| {
-                history_file(&place).map_err(|error| problems.push(asked.unwritable(&error))).ok()
+                plain_file(&place, "the history is a database").map_err(|error| told(asked, error)).ok()
+            });
+            let recording = recording.and_then(|(asked, place)| {
+                plain_file(&place, "a recording has an index").map_err(|error| told(asked, error)).ok()
             });
             if problems.is_empty() {
-                return Some(RunFiles { report, picture, timeline, journal, history, log });
+                return Some(RunFiles { report, picture, timeline, journal, history, recording, log });
             }
         }
         eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
@@ -113,12 +118,11 @@ fn grown(asked: Asked<'_>, place: Place, rotation: Rotation) -> io::Result<Journ
     }
 }
 
-fn history_file(place: &Place) -> io::Result<PathBuf> {
+/// The path of what has to be a file, for a reason.
+fn plain_file(place: &Place, reason: &str) -> io::Result<PathBuf> {
     match place {
         Place::File(path) => Ok(path.clone()),
-        Place::Descriptor(_) | Place::Irregular(_) => {
-            Err(io::Error::other("the history is a database; give it a file"))
-        }
+        Place::Descriptor(_) | Place::Irregular(_) => Err(io::Error::other(format!("{reason}; give it a file"))),
     }
 }
 

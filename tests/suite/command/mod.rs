@@ -21,6 +21,7 @@ mod outcomes;
 mod outputs;
 mod paths;
 mod planted;
+mod recording;
 mod report;
 mod schema;
 mod service;

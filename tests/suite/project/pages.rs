@@ -129,7 +129,7 @@ fn commands_have_the_options_that_pages_give_them() {
             let line = line.strip_prefix("$ ").unwrap_or(line).split(" #").next().unwrap();
             let Some(arguments) = line.strip_prefix("saoms ") else { continue };
             let words: Vec<&str> = arguments.split_whitespace().collect();
-            let named = if words[0] == "new" { 2 } else { 1 };
+            let named = if ["new", "record"].contains(&words[0]) { 2 } else { 1 };
             let help = stdout(&saoms(&[&words[..named], &["--help"]].concat()));
             for option in words.iter().filter(|word| word.starts_with("--")) {
                 let option = option.split('=').next().unwrap();

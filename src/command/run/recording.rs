@@ -1,0 +1,103 @@
+//! The recording that a run leaves (`--record`).
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+use saoms_api::host::one_line;
+use saoms_api::rule::nearest;
+use saoms_control::{AlertList, LossCounts};
+use saoms_lang::assembly::{Assembly, Traffic};
+use saoms_lang::source::{Sources, Span};
+use saoms_recording::{RecordedRun, Recording, RecordingEvents};
+
+use super::RunArguments;
+use super::control::fleet_name;
+use crate::Exit;
+use crate::output::{counted, eprint, mode_of_files};
+
+/// Options of `saoms run` for the recording.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct RecordingArguments {
+    /// Record the messages of all topics, the journal and the log to this file, in the format MCAP with types of ROS 2,
+    /// which Foxglove opens. `saoms record` shows it
+    #[arg(long = "record", id = "record", value_name = "FILE.mcap")]
+    pub(super) file: Option<PathBuf>,
+
+    /// Record the messages of these topics alone
+    #[arg(long = "record-topics", value_name = "TOPIC,...", requires = "record", value_delimiter = ',')]
+    topics: Option<Vec<String>>,
+}
+
+/// Kind and subject of the alert about the file.
+const ALERT: (&str, &str) = ("file", "recording");
+
+/// The names and texts of what says what the fleet is, without secrets.
+pub(super) fn texts(sources: &Sources) -> Vec<(String, String)> {
+    let files = sources.iter().map(|(_, file)| file).filter(|file| !file.path().starts_with("--"));
+    files
+        .map(|file| {
+            let whole = Span::new(0, u32::try_from(file.text().len()).unwrap_or(u32::MAX));
+            (file.path().to_owned(), file.shown(whole).into_owned())
+        })
+        .collect()
+}
+
+/// The observer that records the run. A topic that nobody has is reported.
+pub(super) fn of(
+    path: &Path,
+    arguments: &RunArguments,
+    (assembly, files): (&Assembly, Vec<(String, String)>),
+    alerts: &Arc<AlertList>,
+) -> Result<Recording, Exit> {
+    let topics = arguments.recording.topics.clone();
+    if let Some(wanted) = &topics {
+        let known = Traffic::of(assembly).topics;
+        let names = || known.iter().map(|topic| topic.name.as_str());
+        let unknown: Vec<&String> = wanted.iter().filter(|topic| !names().any(|name| name == *topic)).collect();
+        for topic in &unknown {
+            let near = nearest(topic, names()).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+            let topic = one_line(topic);
+            eprint(&format!("error: `--record-topics`: the fleet has no topic `{topic}`{near}\n"));
+        }
+        if !unknown.is_empty() {
+            eprint(&format!("\n{}: nothing was started\n", counted(unknown.len(), "error")));
+            return Err(Exit::WrongInput);
+        }
+    }
+    let run = RecordedRun {
+        name: fleet_name(arguments),
+        files,
+        node: arguments.node.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        topics,
+    };
+    Ok(Recording::new(path, mode_of_files(), run, Box::new(Told { alerts: Arc::clone(alerts) })))
+}
+
+/// True if the recording lacks something, which is told.
+pub(super) fn lacks_messages(losses: &LossCounts) -> bool {
+    let lost = losses.recorded.load(Ordering::Relaxed);
+    if lost > 0 {
+        let lost = counted(usize::try_from(lost).unwrap_or(usize::MAX), "message");
+        eprint(&format!("error: the recording lacks {lost}, records of the journal and lines of the log included\n"));
+    }
+    lost > 0
+}
+
+/// Tells people of a recording that loses something.
+struct Told {
+    alerts: Arc<AlertList>,
+}
+
+impl RecordingEvents for Told {
+    fn fails(&self, text: &str) {
+        eprint(&format!("warning: {text}\n"));
+        self.alerts.raise(ALERT.0, ALERT.1, text.to_owned());
+    }
+
+    fn works(&self) {
+        self.alerts.over(ALERT.0, ALERT.1);
+    }
+}
