@@ -79,11 +79,13 @@ enum Load {
     History,
     /// It records what `saoms view` shows (`--report`).
     Recording,
+    /// It records its messages, its journal and its log (`--record`).
+    Messages,
     /// All of `Page`, `State`, `History` and `Recording`.
     All,
 }
 
-const LOADS: [Load; 9] = [
+const LOADS: [Load; 10] = [
     Load::NoControl,
     Load::Unasked,
     Load::Top,
@@ -92,6 +94,7 @@ const LOADS: [Load; 9] = [
     Load::State,
     Load::History,
     Load::Recording,
+    Load::Messages,
     Load::All,
 ];
 
@@ -106,6 +109,7 @@ impl Load {
             Load::State => "state",
             Load::History => "history",
             Load::Recording => "recording",
+            Load::Messages => "messages",
             Load::All => "page, state, history and recording",
         }
     }
@@ -197,6 +201,9 @@ fn measure(arguments: &Arguments, load: Load) -> Outcome<Measured> {
     };
     let mut run = command();
     run.args(["run", "load.composite", "--stay", "--quiet", "--report", "report.json"]);
+    if load == Load::Messages {
+        run.args(["--record", "run.mcap"]);
+    }
     let is = |one| load == one || load == Load::All;
     if !is(Load::Recording) {
         run.arg("--short-report");
@@ -214,7 +221,7 @@ fn measure(arguments: &Arguments, load: Load) -> Outcome<Measured> {
     let begun = Instant::now();
     let (mut clients, mut top) = (None, None);
     match load {
-        Load::NoControl | Load::Unasked | Load::State | Load::History | Load::Recording => {}
+        Load::NoControl | Load::Unasked | Load::State | Load::History | Load::Recording | Load::Messages => {}
         Load::Top => {
             top = Some(command().args(["top", "--every", "100ms", "--fleet", "./fleet.sock"]).spawn()?);
         }
