@@ -352,10 +352,13 @@ proptest! {
             log.commit(&changes).unwrap();
             expected.push((file.0.lock().unwrap().bytes.len(), log.contents().clone()));
         }
-        let mut bytes = file.0.lock().unwrap().bytes.clone();
+        let all = file.0.lock().unwrap().bytes.clone();
+        let mut bytes = all.clone();
         bytes.truncate(bytes.len().saturating_sub(lost).max(group::HEAD.len()));
-        let whole = expected.iter().rev().find(|(size, _)| *size <= bytes.len()).unwrap();
         bytes.extend_from_slice(&noise);
+        // The noise may be what was lost.
+        let is_whole = |size: usize| bytes.get(..size) == all.get(..size);
+        let whole = expected.iter().rev().find(|(size, _)| is_whole(*size)).unwrap();
         let again = read(&bytes);
         prop_assert_eq!(&again.contents, &whole.1);
         prop_assert_eq!((again.size, again.is_damaged), (whole.0, false));
