@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::peer::Peer;
 use super::wire::Vote;
-use super::{Action, Exchange, News};
+use super::{Action, Exchange, News, OwnTopic};
 
 impl Exchange {
     /// True if all other programs have received all events of this one, but for those that were missed for long.
@@ -53,8 +53,7 @@ impl Exchange {
     pub fn has_received_all(&self) -> bool {
         let there = self.peers.values().filter(|peer| peer.is_reachable && !peer.is_over);
         let mut incoming = there.flat_map(|peer| &peer.incoming);
-        let is_event = |topic: &str| self.reads.get(topic).is_some_and(|own| !own.is_state);
-        incoming.all(|(topic, incoming)| incoming.missing().is_none() || !is_event(topic))
+        incoming.all(|(topic, incoming)| incoming.missing().is_none() || !self.reads.get(topic).is_some_and(is_event))
     }
 
     /// Counts events as lost that programs have sent, are there, and did not send again for long.
@@ -62,8 +61,8 @@ impl Exchange {
         let mut given_up = Vec::new();
         for (program, peer) in self.peers.iter_mut().filter(|(_, peer)| peer.is_reachable && !peer.is_over) {
             for (topic, incoming) in &mut peer.incoming {
-                let is_event = self.reads.get(topic).is_some_and(|own| !own.is_state);
-                if let Some(count) = incoming.lacks().filter(|_| is_event) {
+                let Some(count) = incoming.lacks() else { continue };
+                if self.reads.get(topic).is_some_and(is_event) {
                     let (_, ready) = incoming.skip_to(incoming.last + 1);
                     given_up.push((*program, Arc::clone(&peer.name), Arc::clone(topic), count, ready));
                 }
@@ -115,4 +114,9 @@ impl Exchange {
         let alive = self.sign_of_life(true);
         self.put_alive(&alive);
     }
+}
+
+/// True if a program waits for what it lacks of a topic.
+fn is_event(topic: &OwnTopic) -> bool {
+    !topic.is_state
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::wire::{Alive, Begins, Reads, Vote};
+use super::super::wire::{Alive, Begins, Reads, Sends, Vote, Welcome};
 use super::super::{Action, Exchange, OwnMessage, Settings};
 use super::lossy::{Lossy, MILLISECOND, Weather};
 
@@ -59,6 +59,21 @@ fn what_was_sent_before_a_program_saw_no_work_left_arrives_before_the_end() {
     network.programs[0].is_stopped = true;
     network.run(2_000 * MILLISECOND);
     assert!(network.programs[1].exchange.has_received_all());
+}
+
+#[test]
+fn what_is_never_sent_again_is_counted_as_lost_and_not_waited_for_any_more() {
+    let mut own = program(&[]);
+    own.read(&"EVENTS".into(), false, 0);
+    let topic = || "EVENTS".to_owned();
+    let sends = vec![Sends { topic: topic(), last: 3, oldest: 1, ..Sends::default() }];
+    let welcomes = vec![Welcome { reader: 1, topic: topic(), first: 1 }];
+    own.hear(&Alive { sends, welcomes, ..alive(2, "other", Vote::Done) }, 0);
+    assert!(own.is_done() && !own.has_received_all());
+    own.take_actions();
+    own.give_up_missing();
+    assert!(own.has_received_all());
+    assert_eq!(lost_of(own.take_actions()), 3);
 }
 
 #[test]
@@ -124,7 +139,12 @@ fn lacking(own: &mut Exchange, program: u64, name: &str) {
 
 fn lost(own: &mut Exchange) -> u64 {
     own.leave();
-    let news = own.take_actions().into_iter().filter_map(|action| match action {
+    lost_of(own.take_actions())
+}
+
+/// Number of the messages that these actions tell as lost.
+fn lost_of(actions: Vec<Action>) -> u64 {
+    let news = actions.into_iter().filter_map(|action| match action {
         Action::Tell(news) => Some(news.lost()),
         _ => None,
     });
