@@ -5,6 +5,7 @@
 
 mod arguments;
 mod command;
+mod environment;
 mod fleet;
 mod guard;
 mod lsp;
@@ -29,6 +30,8 @@ enum Exit {
 }
 
 fn main() {
+    // SAFETY: this is the first thing that the process does.
+    unsafe { environment::prepare() };
     // clap itself ends with 2 on a wrong command line, which is wrong input too.
     let exit = command::execute();
     // Whatever else there is to say of it: who reads the output lacks a part.

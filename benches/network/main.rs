@@ -238,6 +238,10 @@ impl Program {
     fn start(&self) -> Outcome<Running> {
         let mut command = Command::new(env::current_exe()?);
         command.args(["--bench", "--inside", &serde_json::to_string(self)?]);
+        if self.contender == Contender::Saoms {
+            // As the command does.
+            command.env("ZENOH_RUNTIME", "(rx: (worker_threads: 1))");
+        }
         Ok(Running(command.stdout(Stdio::piped()).stderr(Stdio::inherit()).spawn()?))
     }
 

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use saoms_abi::{Bytes, Status, TransportEvents};
 use zenoh::Wait as _;
+use zenoh::key_expr::KeyExpr;
 use zenoh::pubsub::Subscriber;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::sample::{Locality, Sample, SampleKind};
@@ -18,6 +19,16 @@ use super::{Failure, causes};
 
 /// Longest time for the end of a session.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Messages with one key before the key is declared. Zenoh then sends its number and keeps the routes that belong to it;
+/// without that it looks them up for each message.
+const FREQUENT: u32 = 16;
+
+/// Most keys that are declared by one session.
+const DECLARED: usize = 1024;
+
+/// Most keys whose messages are counted.
+const COUNTED: usize = 4096;
 
 /// Attempts in a row that fail for one reason before that is told.
 const CERTAIN: u32 = 3;
@@ -85,6 +96,15 @@ pub(super) struct Session {
     zenoh: zenoh::Session,
     program: Arc<Program>,
     subscribers: Mutex<HashMap<u64, Subscriber<()>>>,
+    keys: RwLock<Keys>,
+}
+
+/// The keys that this session puts often.
+#[derive(Default)]
+struct Keys {
+    /// The messages of each key that is not declared.
+    counts: HashMap<String, u32>,
+    declared: HashMap<String, KeyExpr<'static>>,
 }
 
 impl Session {
@@ -139,20 +159,46 @@ impl Session {
             });
             listener.background().wait().map_err(Failure::failed)?;
         }
-        Ok(Session { zenoh, program, subscribers: Mutex::default() })
+        Ok(Session { zenoh, program, subscribers: Mutex::default(), keys: RwLock::default() })
     }
 
     pub(super) fn put(&self, key: &str, message: &[u8], attachment: &[u8], is_urgent: bool) -> Result<(), Failure> {
         // What the network has no room for is dropped, and sent again by the program: to wait for one slow reader would
         // hold up all others.
         let priority = if is_urgent { Priority::InteractiveHigh } else { Priority::Data };
-        let put = self
-            .zenoh
-            .put(key, message)
-            .attachment(attachment)
-            .congestion_control(CongestionControl::Drop)
-            .priority(priority);
+        let declared = self.declared(key)?;
+        let put = match declared {
+            Some(declared) => self.zenoh.put(declared, message),
+            None => self.zenoh.put(key, message),
+        };
+        let put = put.attachment(attachment).congestion_control(CongestionControl::Drop).priority(priority);
         put.wait().map_err(Failure::failed)
+    }
+
+    /// The declared form of a key, once the key is frequent.
+    fn declared(&self, key: &str) -> Result<Option<KeyExpr<'static>>, Failure> {
+        let keys = self.keys.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(declared) = keys.declared.get(key) {
+            return Ok(Some(declared.clone()));
+        }
+        let is_full = keys.declared.len() >= DECLARED;
+        drop(keys);
+        if is_full {
+            return Ok(None);
+        }
+        let mut keys = self.keys.write().unwrap_or_else(PoisonError::into_inner);
+        if keys.counts.len() >= COUNTED {
+            keys.counts.clear();
+        }
+        let count = keys.counts.entry(key.to_owned()).or_default();
+        *count += 1;
+        if *count < FREQUENT || keys.declared.contains_key(key) {
+            return Ok(None);
+        }
+        let declared = self.zenoh.declare_keyexpr(key.to_owned()).wait().map_err(Failure::failed)?;
+        keys.counts.remove(key);
+        keys.declared.insert(key.to_owned(), declared.clone());
+        Ok(Some(declared))
     }
 
     pub(super) fn subscribe(&self, keys: &str, token: u64) -> Result<(), Failure> {

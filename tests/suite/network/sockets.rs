@@ -136,3 +136,24 @@ fn an_event_leaves_a_program_once_however_many_programs_read_it() {
     };
     beside_each_other(&[&|| trial(Transport::Relay), &|| trial(Transport::Zenoh)]);
 }
+
+#[test]
+fn one_thread_reads_the_network_unless_the_user_wants_more() {
+    let readers = |program: &Program| {
+        let tasks = fs::read_dir(format!("/proc/{}/task", program.pid())).unwrap();
+        let names = tasks.filter_map(|task| fs::read_to_string(task.ok()?.path().join("comm")).ok());
+        names.filter(|name| name.starts_with("rx-")).count()
+    };
+    for (own, expected) in [(None, 1), (Some("(rx: (worker_threads: 3))"), 3)] {
+        let programs = Programs::over(Transport::Zenoh);
+        let broker = programs.broker();
+        let tasks = on_network(&programs.url(programs.port), &[], &[("Reader", "numbers.Reader", &[("count", "1")])]);
+        let client = programs.start_with("client", &tasks, |run| {
+            own.map(|own| run.env("ZENOH_RUNTIME", own));
+        });
+        programs.until(&client, "program `broker` is on the network");
+        assert_eq!(readers(&client), expected, "{}", client.printed());
+        programs.stop(&client);
+        programs.end(&broker);
+    }
+}

@@ -25,6 +25,7 @@ use super::FIRST_OF_TOPICS;
 use super::enter::{SETTLES, in_milliseconds};
 use super::link::Link;
 use super::unsent::UnsentQueue;
+use crate::schedule::os::sys;
 use linger::End;
 pub(super) use linger::Linger;
 
@@ -217,11 +218,13 @@ impl<F: Fleet> Member<F> {
             return false;
         }
         let Some(waiting) = self.port.take_short() else { return false };
+        let waits = sys::waits();
         self.hands_over_at = Some(begin + LONGEST_AT_ONCE);
         self.take(waiting);
         self.hands_over_at = None;
         let end = self.now();
-        if end - begin > LONGEST_AT_ONCE {
+        // A thread that had to leave the processor to another one takes long as well, and did not wait for the network.
+        if end - begin > LONGEST_AT_ONCE && sys::waits() > waits {
             self.crowded_until = end + CROWDED;
         }
         if !self.has_time() || !self.unsent.is_empty() {
