@@ -241,10 +241,14 @@ impl Environment {
             if counted == 0 {
                 context.vote(Work::GivenUp);
             }
-            if !self.has_world && !job.is_visit {
+            if job.is_visit {
+                continue;
+            }
+            // The world may be in another program, whose report has its counts.
+            context.count("scenario.delivered", -counted);
+            if !self.has_world {
                 context.count("luggage.open", counted);
                 context.count("luggage.given_up", 1 + counted);
-                context.count("scenario.delivered", -counted);
             }
         }
     }
