@@ -1,3 +1,5 @@
+mod loops;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -5,8 +7,6 @@ use std::time::Duration;
 
 use saoms_api::event::fault::FaultCall;
 use saoms_api::event::{EventCall, STOP};
-use saoms_api::host::contain::contained;
-use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT, shown};
 use saoms_api::{
@@ -14,10 +14,8 @@ use saoms_api::{
     ReportValue, StopFunction, Time, Value, Work,
 };
 
-use super::body::subject;
 use super::declared::TopicUse;
 use super::part::Part;
-use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
@@ -51,11 +49,6 @@ impl ComponentHost<'_> {
 pub(super) const MAX_HANDLES: usize = 1000;
 /// Greatest length of an event, in bytes.
 const MAX_EVENT: usize = 65_536;
-
-/// Records carry the time at which the execution began: an execution is one instant, and the clock need not be read.
-fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
-    Stamp { ids: &shared.records, component: part.index, time: part.now }
-}
 
 impl Host for ComponentHost<'_> {
     fn name(&self) -> &str {
@@ -396,13 +389,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
-        if !self.part.initializing {
-            return Err(Failure::new("take the loops in `initialize`, and keep what `loops` returns"));
-        }
-        let one = self.spec().loops.get(place as usize).ok_or("there are fewer loops")?;
-        let constructed = contained(|| about(&subject(&self.part.name), || one.class.construct(&one.values)));
-        let constructed = constructed.and_then(|made| made);
-        constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)))
+        self.construct_loop(place)
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {
@@ -425,23 +412,15 @@ impl Host for ComponentHost<'_> {
     }
 
     fn journal(&mut self, phase: Phase, record: &Record) {
-        if !self.part.spent.has_record() {
-            return;
+        if self.part.spent.has_record() {
+            self.write_record(phase, record);
         }
-        let stamp = stamp(self.shared, self.part);
-        let Part { recorder, spec, .. } = &mut *self.part;
-        let place = recorder.present().map(usize::from);
-        let class = place.and_then(|place| spec.loops.get(place)).map(|one| &one.class);
-        let senses = class.map_or(&[][..], |class| &class.declaration().senses);
-        recorder.write(stamp, phase, record, senses);
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
-        if !self.part.spent.has_record() {
-            return;
+        if self.part.spent.has_record() {
+            self.write_change(entry, before, after);
         }
-        let stamp = stamp(self.shared, self.part);
-        self.part.recorder.changed(stamp, entry, before, after);
     }
 
     fn listens(&self, level: Option<Level>) -> bool {
