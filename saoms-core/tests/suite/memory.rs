@@ -237,7 +237,6 @@ fn fleet_of(text: &str) -> Assembly {
         Registration::of::<apart::Clerk>(),
         Registration::of::<apart::Patient>(),
         Registration::of::<apart::Porter>(),
-        Registration::of::<ends::Novice>(),
     ] {
         registry.add(class).unwrap();
     }

@@ -1,6 +1,8 @@
 //! Executions on other threads: who called another component, and that one, go back to the same moment.
 
+use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
@@ -58,25 +60,29 @@ impl Component for Clerk {
     }
 }
 
-/// True once the patient has failed, and while it starts again.
-static FAILED: AtomicBool = AtomicBool::new(false);
+/// The patients that have failed.
+static FAILED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+/// True while a patient takes long to start again.
 static STARTS: AtomicBool = AtomicBool::new(false);
 
-/// Fails when it hears a number for the first time, and takes long to start again.
+/// Fails when it hears a number for the first time.
 #[derive(Class)]
-#[class(name = "patient", periodic, saves, apart)]
+#[class(name = "patient", periodic, saves)]
 pub(super) struct Patient {
+    /// For how long it starts again, in milliseconds.
+    #[property(default = 0)]
+    takes: u64,
     #[subscribes(NUMBERS)]
     numbers: Subscription<Own>,
 }
 
 impl Component for Patient {
-    type Properties = ();
+    type Properties = saoms_api::Own<Self>;
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        if context.goes_on() && !context.goes_on_from_earlier_program() {
+        if self.takes > 0 && context.goes_on() && !context.goes_on_from_earlier_program() {
             STARTS.store(true, Ordering::SeqCst);
-            sleep(Duration::from_millis(200));
+            sleep(Duration::from_millis(self.takes));
             STARTS.store(false, Ordering::SeqCst);
         }
         Ok(())
@@ -84,7 +90,7 @@ impl Component for Patient {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         for number in context.receive(&self.numbers) {
-            if !FAILED.swap(true, Ordering::SeqCst) {
+            if FAILED.lock().unwrap().insert(context.name().to_owned()) {
                 return Err("it is ill".into());
             }
             context.info(format!("has heard {}", number.value));
@@ -217,7 +223,7 @@ fn the_report_has_no_more_than_what_is_gone_on_from() {
 #[test]
 fn what_a_component_heard_in_vain_is_there_while_it_starts_again() {
     let folder = tempfile::tempdir().unwrap();
-    let fleet = "P patient period=3 restart=1ms/5\nT teller period=2";
+    let fleet = "P patient takes=200 period=3 restart=1ms/5\nT teller period=2";
     let mut crash = None;
     run(fleet, real(20_000), folder.path(), |handle| {
         let content = InjectedContent::Fields(json!({"value": 42}));

@@ -1,18 +1,15 @@
 //! Ends that a memory goes through: of a run while something belongs together, of a component that an operator stops,
 //! and of a program while a component is in its delay.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Saved, Subscription};
 use saoms_core::schedule::{Handle, InjectError, InjectedContent, Injection, Order, Settings};
 use saoms_core::status::FleetPhase;
 use serde_json::json;
 
 use super::apart::copy;
-use super::{Count, FLEET, behind, run};
-use crate::actor::{NUMBERS, Own};
+use super::{FLEET, behind, run};
 use crate::fleet::real;
 
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -98,43 +95,10 @@ fn who_was_stopped_has_its_last_word_in_the_next_program() {
     assert_eq!(crate::fleet::of(&report, "A").executions, 0);
 }
 
-/// Fails when it hears a number for the first time.
-#[derive(Class)]
-#[class(name = "novice", periodic, saves)]
-pub(super) struct Novice {
-    #[subscribes(NUMBERS)]
-    numbers: Subscription<Own>,
-}
-
-/// True once the novice has failed.
-static FAILED: AtomicBool = AtomicBool::new(false);
-
-impl Component for Novice {
-    type Properties = ();
-
-    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        for number in context.receive(&self.numbers) {
-            if !FAILED.swap(true, Ordering::SeqCst) {
-                return Err("it does not know numbers".into());
-            }
-            context.info(format!("has heard {}", number.value));
-        }
-        Ok(())
-    }
-
-    fn save(&mut self) -> Result<Saved, Failure> {
-        Ok(Saved::of(&Count { count: 1 }))
-    }
-
-    fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
-        Ok(())
-    }
-}
-
 #[test]
 fn what_nobody_had_read_is_heard_again_after_a_failure_in_the_next_program() {
     let folder = tempfile::tempdir().unwrap();
-    let fleet = "N novice period=3 restart=1ms/5";
+    let fleet = "N patient period=3 restart=1ms/5";
     let mut crash = None;
     run(fleet, real(20_000), folder.path(), |handle| {
         handle.pause().unwrap();
@@ -144,7 +108,7 @@ fn what_nobody_had_read_is_heard_again_after_a_failure_in_the_next_program() {
         handle.stop();
     });
     let (_, told) = run(fleet, real(100), crash.unwrap().path(), |handle| handle.resume().unwrap());
-    assert!(told.contains("it does not know numbers"), "{told}");
+    assert!(told.contains("it is ill"), "{told}");
     assert_eq!(told.matches("N: has heard 42").count(), 1, "{told}");
 }
 
