@@ -265,6 +265,31 @@ fn one_that_is_removed_and_does_not_end_is_left_behind() {
 }
 
 #[test]
+fn one_that_is_removed_and_whose_call_does_not_return_has_no_say_any_more() {
+    for vote in ["open", "done"] {
+        let diary = Arc::new(Diary::default());
+        let settings = Settings { grace: Duration::from_millis(100), ..real(20_000) };
+        let kept = "A actor period=1 subscribes=TALK each=[hear; 600+: done]";
+        let text = format!(
+            "{kept}\nP callee publishes=TALK called=[sleep 400; {vote}; say late; log is back]\n\
+             R actor period=1 peer=P last=[ask me]"
+        );
+        let fleet = RunningFleet::start(wanted(&text), settings, vec![diary.clone()]).unwrap();
+        assert_eq!(apply(&fleet, kept).unwrap().removed, ["R", "P"]);
+        diary.until("P: is back");
+        let report = fleet.run_to_end();
+        assert!(report.components[0].executions > 600, "{vote}: it has ended before A said so");
+        let why = ["R` was removed, and did not end: `shutdown` has not", "P` was removed, and did not end: a call"];
+        let reasons = &report.outcome.reasons;
+        assert!(
+            reasons.len() == 2 && why.iter().zip(reasons).all(|(why, one)| one.contains(why)),
+            "{vote}: {reasons:?}"
+        );
+        assert!(!diary.lines().contains("late"), "{}", diary.lines());
+    }
+}
+
+#[test]
 fn a_change_is_undone_although_one_that_began_does_not_end() {
     let before = "A actor period=1";
     let (fleet, diary) = started(before);

@@ -46,6 +46,11 @@ impl Engine {
         body.part.apart.take().is_none_or(|number| self.apart.all.remove(&number).is_some())
     }
 
+    /// Forgets the number of a body whose code runs on no such thread any more.
+    pub(super) fn no_longer_apart(&mut self, number: u64) {
+        self.apart.all.remove(&number);
+    }
+
     /// Takes off the bus what a body has there whose thread is left behind.
     pub(super) fn take_off(&mut self, number: u64) {
         let Some(BusEnds { publishers, readers }) = self.apart.all.remove(&number) else { return };

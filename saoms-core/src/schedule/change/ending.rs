@@ -10,6 +10,7 @@ use super::transaction::Change;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
 use crate::schedule::component::library::with_library;
+use crate::schedule::engine::RunPhase;
 use crate::schedule::engine::slot::{NEVER, PendingRequest, SlotState};
 use crate::schedule::shared::Shared;
 
@@ -132,32 +133,38 @@ impl Change<'_> {
     /// each serves calls until its turn.
     pub(super) fn shut_down_removed(&mut self, now: u64) {
         let leaving = std::mem::take(&mut self.leaving);
-        let numbers: Vec<u32> = leaving.iter().map(|(number, _)| *number).collect();
+        let mut ends = Vec::with_capacity(leaving.len());
         let mut engine = self.shared.lock();
-        for (number, body) in leaving {
+        for (number, mut body) in leaving {
             let slot = &mut engine.slots[number as usize];
             if slot.state != SlotState::Abandoned {
                 // Its turn comes from here, and not from the queues.
                 (slot.state, slot.pending) = (SlotState::Leaving, PendingRequest::None);
                 (slot.entry, slot.waiting, slot.queued) = (NEVER, false, false);
             }
+            // The thread of a caller has it meanwhile, and may never give it back.
+            ends.push((number, engine.goes_apart(&mut body)));
             engine.note_answer(number);
             engine.put_back(number, body);
         }
-        engine.roles.work.retain(|number| !numbers.contains(number));
+        engine.roles.work.retain(|number| !ends.iter().any(|(ends, _)| ends == number));
         self.shared.release(engine);
-        for number in numbers {
-            self.shut_down(number, now);
+        for (number, apart) in ends {
+            self.shut_down(number, apart, now);
         }
     }
 
-    /// Shuts down a component that the change has removed.
-    fn shut_down(&self, number: u32, now: u64) {
+    /// Shuts down a component that the change has removed, and whose body has this number while others call it.
+    fn shut_down(&self, number: u32, apart: u64, now: u64) {
         let deadline = Instant::now() + self.shared.settings.grace;
         let mut engine = self.shared.lock();
         let taken = loop {
             if !engine.slots[number as usize].is_alive() {
                 // The run has begun to end, or its code has failed in a call.
+                if let Some(body) = engine.slots[number as usize].body.as_mut() {
+                    body.part.apart = None;
+                }
+                engine.no_longer_apart(apart);
                 engine.leave_topics(number, now);
                 engine.forget_vote(number, now);
                 engine.forget(number);
@@ -169,13 +176,22 @@ impl Change<'_> {
                 taken => break taken,
             }
         };
-        self.shared.release(engine);
         let ended = match taken {
             Some(mut body) => {
+                engine.returns_from_apart(&mut body);
+                self.shared.release(engine);
                 (body.part.now, body.part.due) = (now, now);
                 self.end(number, body)
             }
-            None => Err(Failure::new("a call of its code has not returned")),
+            None => {
+                // Who ends the run meanwhile gives up what does not return.
+                if engine.phase == RunPhase::Running {
+                    engine.leave_behind(number);
+                    engine.take_off(apart);
+                }
+                self.shared.release(engine);
+                Err(Failure::new("a call of its code has not returned"))
+            }
         };
         let mut engine = self.shared.lock();
         match ended {

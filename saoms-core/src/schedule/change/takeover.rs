@@ -231,7 +231,7 @@ impl Body {
 
     /// The same on a thread that was left behind, once its code has returned. Its hardware is stopped before, unless
     /// another instance moves that by now: it was stopped when the code was left behind.
-    pub(super) fn end_late(mut self: Box<Body>, shared: &Shared) {
+    pub(in crate::schedule) fn end_late(mut self: Box<Body>, shared: &Shared) {
         if !shared.look(|engine| engine.has_other_instance(&self.part)) {
             shared.stops.request(&self.part.stops);
         }

@@ -86,8 +86,13 @@ pub(super) fn call_now(
     let now = shared.clock.now();
     let mut engine = shared.lock();
     let name = Arc::clone(&body.part.name);
-    engine.finish_call(provider, body, panic, now);
-    shared.release(engine);
+    if engine.is_left_behind(&body.part) && !engine.is_abandoned(provider) {
+        shared.release(engine);
+        body.end_late(shared);
+    } else {
+        engine.finish_call(provider, body, panic, now);
+        shared.release(engine);
+    }
     result.map_err(|error| named(error, &name))
 }
 
