@@ -10,9 +10,9 @@ use saoms_api::host::{SharedMessage, TopicKind, cdr};
 use saoms_api::{Message, Saved};
 
 use super::forms::{
-    COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, HeldForm, INPUTS, InputsForm, KNOWN, MessageForm,
-    NAMES, NAMES_ELSEWHERE, PAUSED, PRESENT, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS,
-    STATES, StateForm, TEXTS, UnreadForm, WAITING,
+    COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, FAILED, HeldForm, INPUTS, InputsForm, KNOWN,
+    MessageForm, NAMES, NAMES_ELSEWHERE, PAUSED, PRESENT, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm,
+    SAVED, SCHEMAS, STATES, StateForm, TEXTS, UnreadForm, WAITING,
 };
 use super::{CUT, Ending, Engine, NEVER, SharedText, Writing};
 use crate::bus::TopicId;
@@ -48,6 +48,8 @@ struct ComponentCut {
     form: ComponentForm,
     /// The time of its first execution, while that is to come.
     delayed: Option<u64>,
+    /// True if it has failed for good.
+    has_failed: bool,
 }
 
 /// A message with the paths of the components that its header names by numbers.
@@ -161,7 +163,9 @@ impl Engine {
             set: slot.memory.set.clone(),
             alerts: slot.memory.alerts.clone(),
         };
-        (name, Some(ComponentCut { saved: slot.memory.saved.clone(), form, delayed: slot.delayed_until() }))
+        let (saved, delayed) = (slot.memory.saved.clone(), slot.delayed_until());
+        let has_failed = slot.state == SlotState::Failed && slot.last_due.is_some();
+        (name, Some(ComponentCut { saved, form, delayed, has_failed }))
     }
 
     /// What was received of other programs since the last cut.
@@ -336,13 +340,14 @@ impl LaterChanges for Cut {
         differences.put(RUN, PAUSED, self.is_paused.then_some(&[1]));
         for (name, component) in &self.components {
             let entry = format!("{COMPONENT}{name}");
-            let Some(ComponentCut { saved, form, delayed }) = component else {
-                [SAVED, KNOWN, DELAYED].into_iter().for_each(|key| differences.put(&entry, key, None));
+            let Some(ComponentCut { saved, form, delayed, has_failed }) = component else {
+                [SAVED, KNOWN, DELAYED, FAILED].into_iter().for_each(|key| differences.put(&entry, key, None));
                 continue;
             };
             differences.put_form(&entry, KNOWN, form);
             let delayed = delayed.map(u64::to_le_bytes);
             differences.put(&entry, DELAYED, delayed.as_ref().map(|bytes| &bytes[..]));
+            differences.put(&entry, FAILED, has_failed.then_some(&[1][..]));
             match saved.as_ref().filter(|saved| !saved.is_nothing()) {
                 Some(saved) => differences.put_saved(&entry, saved),
                 None => differences.put(&entry, SAVED, None),

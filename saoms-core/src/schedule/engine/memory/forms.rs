@@ -7,12 +7,13 @@ use saoms_api::Message;
 pub(super) const RUN: &str = "(run)\n";
 pub(super) const PRESENT: u64 = 0;
 pub(super) const PAUSED: u64 = 1;
-/// A component, by its path: what it saved, what the engine knows of it, and the time of its first execution as long as
-/// that is to come.
+/// A component, by its path: what it saved, what the engine knows of it, the time of its first execution as long as
+/// that is to come, and something more of one that has failed for good.
 pub(super) const COMPONENT: &str = "(component)\n";
 pub(super) const SAVED: u64 = 0;
 pub(super) const KNOWN: u64 = 1;
 pub(super) const DELAYED: u64 = 2;
+pub(super) const FAILED: u64 = 3;
 /// The types of what components saved, by their hashes.
 pub(super) const SCHEMAS: &str = "(schemas)\n";
 /// What a state topic retains of a publisher, by the topic and the path of the publisher; the keys are those of the

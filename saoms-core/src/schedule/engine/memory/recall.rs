@@ -10,9 +10,9 @@ use saoms_lang::assembly::ComponentSpec;
 use serde_json::Value;
 
 use super::forms::{
-    COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, INPUTS, InputsForm, KNOWN, MessageForm, NAMES,
-    NAMES_ELSEWHERE, PAUSED, PRESENT, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS, STATES,
-    SavedForm, StateForm, TEXTS, WAITING,
+    COMPONENT, COUNTERS, ComponentForm, DELAYED, EVENTS, EventsForm, FAILED, INPUTS, InputsForm, KNOWN, MessageForm,
+    NAMES, NAMES_ELSEWHERE, PAUSED, PRESENT, PartForm, RECEIVED, REPORT, RUN, ReceivedForm, RunForm, SAVED, SCHEMAS,
+    STATES, SavedForm, StateForm, TEXTS, WAITING,
 };
 use super::{Counter, Engine, NEVER, SetForm, SharedText};
 use crate::bus::TopicId;
@@ -51,6 +51,8 @@ struct RecalledComponent {
     saved: Option<Arc<Saved>>,
     /// The time of its first execution, if that is to come.
     delayed: Option<u64>,
+    /// True if it had failed for good.
+    has_failed: bool,
 }
 
 /// What is told of a state that a fleet goes on from.
@@ -105,7 +107,9 @@ impl Recalled {
                 });
                 let delayed = entries.and_then(|entries| entries.get(&DELAYED)?[..].try_into().ok());
                 let delayed = delayed.map(u64::from_le_bytes);
-                recalled.components.insert(path.to_owned(), RecalledComponent { form: known, saved, delayed });
+                let has_failed = entries.is_some_and(|entries| entries.contains_key(&FAILED));
+                let component = RecalledComponent { form: known, saved, delayed, has_failed };
+                recalled.components.insert(path.to_owned(), component);
             } else if let Some(rest) = entry.strip_prefix(STATES) {
                 let topic = rest.split('\n').next().unwrap_or_default();
                 let states = entries.into_iter().flatten().filter_map(|(_, bytes)| cdr::decode(bytes).ok());
@@ -419,8 +423,8 @@ impl Engine {
             let slot = &self.slots[index as usize];
             let name = Arc::clone(&slot.name);
             let Some(known) = recalled.components.get(&*name).filter(|_| !elsewhere.contains(&*name)) else { continue };
-            if !known.form.is_scheduled {
-                // It has said its last words.
+            if !known.form.is_scheduled || known.has_failed {
+                // It has said its last words, or the others have heard that it failed.
                 continue;
             }
             let said = recalled.states.iter().filter(|(_, form)| *form.sender == *name);
