@@ -184,6 +184,7 @@ mod tests {
     fn component(values: Value) -> ComponentStatus {
         ComponentStatus {
             report: ComponentReport { executions: 3, ..ComponentReport::default() },
+            site: "".into(),
             state: ComponentState::Running,
             emergency_stop: false,
             period_ms: None,

@@ -35,7 +35,7 @@ export function sending(floor, orders, map) {
     }
     const known = new Set(floor.luggage.map((one) => one.number));
     const summaries = floor.fleet.state.summaries.join();
-    const answer = await orders.line(`luggage ${place(ends[0])} to ${place(ends[1])}`);
+    const answer = await orders.line(floor.line(`luggage ${place(ends[0])} to ${place(ends[1])}`));
     if (answer === null) return null;
     from.value = to.value = "";
     last = null;
@@ -74,7 +74,7 @@ export function chosen(floor, orders, open, path) {
   const [stop, release, breakDown, wake, sleep] = [
     orders.button("Stop", { kind: "danger", title: "Emergency stop of this robot: saoms estop", order: () => orders.stop(path), isDone: is((one) => one.isStopped) }),
     orders.button("Release", { title: "saoms release", order: () => orders.release(path), isDone: is((one) => !one.isStopped) }),
-    orders.button("Break down", { title: "saoms send \"breakdown ROBOT\"", confirm: `Let ${path} break down?`, order: () => orders.line(`breakdown ${path}`), isDone: is((one) => one.isBroken) }),
+    orders.button("Break down", { title: "saoms send \"breakdown ROBOT\"", confirm: `Let ${path} break down?`, order: () => orders.line(floor.line(`breakdown ${path}`)), isDone: is((one) => one.isBroken) }),
     orders.button("Wake", { title: "Schedule its component: saoms start", order: () => orders.component(path, "start"), isDone: is((one) => !one.isOff) }),
     orders.button("Sleep", { title: "Unschedule its component: saoms stop", order: () => orders.component(path, "stop"), isDone: is((one) => one.isOff) }),
   ];

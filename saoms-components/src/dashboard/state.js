@@ -10,6 +10,8 @@ const JUMP_S = 10;
 const at = (pair) => (Array.isArray(pair) ? { x: pair[0], y: pair[1] } : (pair ?? null));
 export const same = (a, b) => a !== null && b !== null && a.x === b.x && a.y === b.y;
 export const place = (block) => (block ? `(${block.x},${block.y})` : "–");
+/** The site of a topic, which begins with it: robots and luggage of another site may have the same numbers. */
+export const siteOf = (topic) => topic.slice(0, Math.max(0, topic.lastIndexOf("/")));
 
 export class Floor {
   constructor(fleet) {
@@ -32,8 +34,28 @@ export class Floor {
   /** The topics of messages of a type, those of the site that is shown. */
   topics(message) {
     const found = this.fleet.topicList.filter((topic) => topic.message === message).map((topic) => topic.name);
-    const [site] = this.site?.split(/\/(?=[^/]*$)/) ?? [];
-    return this.site?.includes("/") ? found.filter((name) => name.startsWith(`${site}/`)) : found.filter((name) => !name.includes("/"));
+    return found.filter((name) => siteOf(name) === siteOf(this.site ?? ""));
+  }
+
+  /** Shows the site of this topic of positions. What was in conflict at another one is not seen from here. */
+  show(site) {
+    this.site = site;
+    [this.conflicts, this.past] = [new Map(), []];
+  }
+
+  /** An event at the site that is shown, as `saoms send` takes it. */
+  line(event) {
+    const site = siteOf(this.site ?? "");
+    return site ? `${site}: ${event}` : event;
+  }
+
+  /** Judges whether a component belongs to the site that is shown. Where only one has robots, all do. */
+  #isHere(positions) {
+    const sites = new Set(this.sites().map(siteOf));
+    const here = siteOf(this.site ?? "");
+    // An earlier recording does not say of which site they are.
+    const of = ({ name, site }) => (site === undefined ? positions.has(name) : (sites.has(site) ? site : "") === here);
+    return (one) => sites.size < 2 || of(one);
   }
 
   sites() {
@@ -52,7 +74,7 @@ export class Floor {
     this.seen = now;
     const positions = new Map(this.#messages("Position").map((one) => [one.component, one.message]));
     const chargers = new Map(this.#messages("RobotList").map((one) => [one.component, one.message?.charger]));
-    const hasSites = this.sites().length > 1;
+    const isHere = this.#isHere(positions);
     this.#area();
     this.zones = this.#messages("Territory").map((one) => one.message);
     const robots = new Map();
@@ -60,13 +82,13 @@ export class Floor {
     /** What zones say of robots that wait, by the numbers of both robots and the block. */
     this.reasons = new Map();
     for (const one of this.fleet.components.values()) {
+      if (!isHere(one)) continue;
       // A robot that sleeps says nothing: it stays where it was.
       const values = one.state === "idle" && !("robot" in (one.values ?? {})) ? (this.said.get(one.name) ?? {}) : (one.values ?? {});
       if (Array.isArray(values.luggage)) luggage.push(...values.luggage);
       if (Array.isArray(values.waits)) for (const wait of values.waits) this.reasons.set(`${wait.robot}/${wait.goes_first}/${place(at(wait.at))}`, wait.because);
       if (typeof values.robot !== "number" || !Array.isArray(values.block)) continue;
       const position = positions.get(one.name);
-      if (hasSites && !position) continue;
       this.said.set(one.name, values);
       const known = this.robots.get(one.name);
       const block = at(values.block);

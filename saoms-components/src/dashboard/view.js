@@ -3,7 +3,7 @@
 import { h, text } from "/assets/dom.js";
 import { FloorMap } from "./draw.js";
 import { chosen, conflicts, robots, sending } from "./panel.js";
-import { Floor } from "./state.js";
+import { Floor, siteOf } from "./state.js";
 
 /** Robots from which on grants and chargers are left out unless they are asked for. */
 const MANY = 200;
@@ -32,7 +32,7 @@ export function view({ fleet, orders, open, follow }) {
   const tools = h("div", { class: "tools" }, ...Object.values(layers), zoom("Larger", "+", () => map.zoom(1.3)), zoom("Smaller", "−", () => map.zoom(1 / 1.3)), zoom("Whole map", "⤢", () => map.fit()));
   const sites = floor.sites();
   if (sites.length > 1) {
-    const select = h("select", { "aria-label": "Site", onchange: () => ((floor.site = select.value), (map.fitted = null), (map.isFitted = true), follow({ topics: wanted() })) }, ...sites.map((name) => h("option", { value: name }, name.includes("/") ? name.slice(0, name.lastIndexOf("/")) : "main")));
+    const select = h("select", { "aria-label": "Site", onchange: () => (floor.show(select.value), (map.fitted = null), (map.isFitted = true), follow({ topics: wanted() })) }, ...sites.map((name) => h("option", { value: name }, siteOf(name) || "main")));
     tools.prepend(select);
   }
   const legend = h("p", { class: "legend" }, ...[["free", "free"], ["way", "goes to luggage"], ["carries", "carries"], ["charge", "charges"], ["off", "asleep"], ["broken", "stopped, or needs help"]].map(([name, label]) => h("span", { class: `robot-key ${name}` }, label)));

@@ -14,6 +14,7 @@ fn lines(metric: &str) -> Vec<String> {
     [0, 20_000, 2_000_000, 2_000_000, 3_000_000_000].into_iter().for_each(|nanos| lateness.record(nanos));
     let component = ComponentStatus {
         report: ComponentReport { name: name.into(), executions: 5, ..ComponentReport::default() },
+        site: "hall".into(),
         emergency_stop: false,
         state: ComponentState::Running,
         period_ms: Some(100.0),

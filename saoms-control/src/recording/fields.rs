@@ -31,7 +31,7 @@ impl FieldKind {
     /// The same of a component.
     pub(super) fn of_component(names: &[String]) -> Option<FieldKind> {
         match names {
-            [name] if ["class", "state", "waits_for"].contains(&name.as_str()) => Some(FieldKind::Text),
+            [name] if ["class", "site", "state", "waits_for"].contains(&name.as_str()) => Some(FieldKind::Text),
             [name] if name == "emergency_stop" => Some(FieldKind::Truth),
             [name] if name == "period_ms" || COUNTED.contains(&name.as_str()) => Some(FieldKind::Number),
             [name, _] if name == "late_us" => Some(FieldKind::Number),

@@ -172,6 +172,7 @@ fn undated(mut value: Value) -> Value {
 fn record(cells: &mut Cells, one: &ComponentStatus, has_counts: bool) {
     let row = cells.row(&Subject::Component(&one.report.name));
     cells.put(row, &["class"], &json!(one.report.class.as_str()));
+    cells.put(row, &["site"], &json!(one.site.as_str()));
     cells.put(row, &["state"], &json!(one.state));
     cells.put(row, &["emergency_stop"], &json!(one.emergency_stop));
     cells.put(row, &["period_ms"], &json!(one.period_ms));

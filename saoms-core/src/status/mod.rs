@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use saoms_api::extension::RunSummary;
+use saoms_api::host::SmolStr;
 use saoms_api::{Failure, ReportValue, Time};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -51,6 +52,9 @@ pub struct ComponentStatus {
     /// What its report would say now.
     #[serde(flatten)]
     pub report: ComponentReport,
+    /// The site that it belongs to; empty outside of sites.
+    #[serde(serialize_with = "text")]
+    pub site: SmolStr,
     /// What it does.
     pub state: ComponentState,
     /// True from an emergency stop to its release.
@@ -148,6 +152,10 @@ pub(crate) struct Description {
     pub(crate) at: Time,
     pub(crate) waits_for: Option<String>,
     pub(crate) values: Arc<Map<String, Value>>,
+}
+
+fn text<S: Serializer>(text: &SmolStr, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(text)
 }
 
 fn shared<S: Serializer>(values: &Arc<Map<String, Value>>, serializer: S) -> Result<S::Ok, S::Error> {

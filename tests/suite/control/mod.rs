@@ -16,6 +16,7 @@ mod metrics;
 mod network;
 mod orders;
 mod places;
+mod sites;
 mod slow_clients;
 mod status;
 mod time;

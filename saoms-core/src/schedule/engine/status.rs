@@ -174,6 +174,7 @@ impl Engine {
         let is_in_code = self.real && slot.body.is_none();
         ComponentStatus {
             report: self.component_report(slot),
+            site: slot.spec.site.clone(),
             state: match slot.state {
                 SlotState::Idle | SlotState::Removed => ComponentState::Idle,
                 SlotState::Starting => ComponentState::Starting,
