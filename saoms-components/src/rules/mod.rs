@@ -7,6 +7,7 @@ mod apart;
 mod budget;
 mod charger;
 mod classic_walls;
+mod crash;
 mod cuts;
 mod divided;
 mod environments;

@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
-use saoms_api::event::fault::{FaultCall, FaultKind, names_component};
 use saoms_api::extension::LineFault;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use crate::environment::{Environment, EventSpec, Scenario};
+use crate::environment::EventSpec;
 use crate::master::MasterEnvironment;
-use crate::messages::ENVIRONMENT;
+use crate::rules::crash::{crashed, crashes};
 
 const HELP: &str = "write `restart 2s` behind its name, unless that is what you want to see";
 
@@ -28,22 +27,11 @@ pub(in crate::rules) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let components = fleet.components();
-    let mut findings = Vec::new();
-    for (index, properties) in fleet.all::<Environment>() {
-        let events = components[index].topic(ENVIRONMENT.name());
-        let (scenario, _) = Scenario::read_partly(&properties.scenario);
-        for line in scenario.lines() {
-            let mut masters = ended(fleet, &line.event).into_iter();
-            let Some(master) = masters.find(|one| components[*one].topic(ENVIRONMENT.name()) == events) else {
-                continue;
-            };
-            let place = Place::property("scenario").part(line.text as usize, line.bytes.clone()).in_component(index);
-            let finding = Finding::new(place, message(fleet, master));
-            findings.push(finding.label(Place::component(master), "the master").help(HELP));
-        }
-    }
-    findings
+    let found = crashes(fleet, |event| ended(fleet, event)).into_iter();
+    let found = found.map(|(master, place)| {
+        Finding::new(place, message(fleet, master)).label(Place::component(master), "the master").help(HELP)
+    });
+    found.collect()
 }
 
 /// Judges an event that does not stand in a scenario. Places are bytes of its text.
@@ -51,8 +39,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
 /// # Errors
 /// It is a crash of a master that does not start again.
 pub(crate) fn judge_end(fleet: &FleetView<'_>, event: &EventSpec, bytes: Range<usize>) -> Result<(), LineFault> {
-    match ended(fleet, event).first() {
-        Some(master) => Err(LineFault::new(bytes, message(fleet, *master)).help(HELP).code(&RULE.code)),
+    match ended(fleet, event).next() {
+        Some(master) => Err(LineFault::new(bytes, message(fleet, master)).help(HELP).code(&RULE.code)),
         None => Ok(()),
     }
 }
@@ -63,15 +51,6 @@ fn message(fleet: &FleetView<'_>, master: usize) -> String {
 }
 
 /// The masters of the environment that an event crashes for good.
-fn ended(fleet: &FleetView<'_>, event: &EventSpec) -> Vec<usize> {
-    let EventSpec::Raised(text) = event else { return Vec::new() };
-    let call = FaultCall::is_one(text).then(|| FaultCall::read(text).ok()).flatten();
-    let Some(call) = call.filter(|call| matches!(call.kind, FaultKind::Crash { restart: None })) else {
-        return Vec::new();
-    };
-    let is_meant = |master: &usize| {
-        let one = &fleet.components()[*master];
-        call.to.iter().any(|name| names_component(&name.text, one.path, one.node))
-    };
-    fleet.indices::<MasterEnvironment>().filter(is_meant).collect()
+fn ended<'f, 'v>(fleet: &'f FleetView<'v>, event: &EventSpec) -> impl Iterator<Item = usize> + use<'f, 'v> {
+    crashed::<MasterEnvironment>(fleet, event, false)
 }

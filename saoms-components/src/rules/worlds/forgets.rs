@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use saoms_api::event::fault::{FaultCall, FaultKind, names_component};
 use saoms_api::extension::LineFault;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use crate::environment::{Environment, EventSpec, Scenario};
-use crate::messages::ENVIRONMENT;
+use crate::environment::EventSpec;
+use crate::rules::crash::{crashed, crashes};
 use crate::world::World;
 
 const HELP: &str = "add `<property name=\"restart\">onFailure</property>` to it: it saves then what it goes on with";
@@ -28,24 +27,11 @@ pub(in crate::rules) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let components = fleet.components();
-    let mut findings = Vec::new();
-    for (index, properties) in fleet.all::<Environment>() {
-        let events = components[index].topic(ENVIRONMENT.name());
-        let (scenario, _) = Scenario::read_partly(&properties.scenario);
-        for line in scenario.lines() {
-            let worlds = forgetful(fleet, &line.event);
-            let Some(world) = worlds.into_iter().find(|one| components[*one].topic(ENVIRONMENT.name()) == events)
-            else {
-                continue;
-            };
-            let place = Place::property("scenario").part(line.text as usize, line.bytes.clone()).in_component(index);
-            findings.push(
-                Finding::new(place, message(fleet, world)).label(Place::component(world), "the world").help(HELP),
-            );
-        }
-    }
-    findings
+    let found = crashes(fleet, |event| forgetful(fleet, event)).into_iter();
+    let found = found.map(|(world, place)| {
+        Finding::new(place, message(fleet, world)).label(Place::component(world), "the world").help(HELP)
+    });
+    found.collect()
 }
 
 /// Judges an event that does not stand in a scenario. Places are bytes of its text.
@@ -53,8 +39,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
 /// # Errors
 /// It is a crash of a world that forgets all.
 pub(crate) fn judge_crash(fleet: &FleetView<'_>, event: &EventSpec, bytes: Range<usize>) -> Result<(), LineFault> {
-    match forgetful(fleet, event).first() {
-        Some(world) => Err(LineFault::new(bytes, message(fleet, *world)).help(HELP).code(&RULE.code)),
+    match forgetful(fleet, event).next() {
+        Some(world) => Err(LineFault::new(bytes, message(fleet, world)).help(HELP).code(&RULE.code)),
         None => Ok(()),
     }
 }
@@ -65,15 +51,6 @@ fn message(fleet: &FleetView<'_>, world: usize) -> String {
 }
 
 /// The worlds that an event crashes and starts again, and that save nothing.
-fn forgetful(fleet: &FleetView<'_>, event: &EventSpec) -> Vec<usize> {
-    let EventSpec::Raised(text) = event else { return Vec::new() };
-    let call = FaultCall::is_one(text).then(|| FaultCall::read(text).ok()).flatten();
-    let Some(call) = call.filter(|call| matches!(call.kind, FaultKind::Crash { restart: Some(_) })) else {
-        return Vec::new();
-    };
-    let is_meant = |world: &usize| {
-        let one = &fleet.components()[*world];
-        !one.restarts && call.to.iter().any(|name| names_component(&name.text, one.path, one.node))
-    };
-    fleet.indices::<World>().filter(is_meant).collect()
+fn forgetful<'f, 'v>(fleet: &'f FleetView<'v>, event: &EventSpec) -> impl Iterator<Item = usize> + use<'f, 'v> {
+    crashed::<World>(fleet, event, true).filter(move |world| !fleet.components()[*world].restarts)
 }
