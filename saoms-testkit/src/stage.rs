@@ -1,7 +1,9 @@
 //! The host of a component on a [`Bench`].
 
+mod transcript;
+
 use std::collections::BTreeMap;
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,22 +17,8 @@ use saoms_api::{
 use saoms_registry::registry::{ClassTopic, PropertyDeclaration, RegisteredClass, RegisteredLoop, Registry};
 use saoms_registry::schema::Schema;
 
+pub(crate) use self::transcript::Action;
 use crate::Bench;
-
-/// An action of a component.
-pub(crate) enum Action {
-    /// A message that it sent as the publisher with this index.
-    Sent(usize, SharedMessage),
-    Log(Level, String),
-    Console(String),
-    Journal(String),
-    Report(String),
-    Work(Work),
-    /// An event that it raised.
-    Raised(String),
-    /// The execution was skipped, because the component of this name was busy.
-    Skipped(String),
-}
 
 /// A topic to which the component subscribed.
 pub(crate) struct BoundTopic {
@@ -232,40 +220,6 @@ impl Stage {
             region: None,
             departed: Vec::new(),
         })
-    }
-
-    pub(crate) fn transcript(&self) -> String {
-        let mut text = String::new();
-        for (time, what) in &self.actions {
-            let _ = write!(text, "{:8.3} s  ", time.as_nanos() as f64 / 1e9);
-            let _ = match what {
-                Action::Sent(place, message) => {
-                    let taken = &self.publishers[*place];
-                    let shown = taken.schema.as_ref().and_then(|schema| schema.decode(message.bytes()).ok());
-                    let shown = shown.map_or_else(|| "bytes that are no message".to_owned(), |json| json.to_string());
-                    writeln!(text, "sends {} {shown}", taken.name)
-                }
-                Action::Log(level, line) => writeln!(text, "{}: {line}", level_name(*level)),
-                Action::Console(line) => writeln!(text, "console: {line}"),
-                Action::Journal(line) => writeln!(text, "{line}"),
-                Action::Report(line) => writeln!(text, "report: {line}"),
-                Action::Work(Work::Open) => writeln!(text, "has work left"),
-                Action::Work(Work::Done) => writeln!(text, "has no work left"),
-                Action::Work(Work::GivenUp) => writeln!(text, "gave up work"),
-                Action::Raised(event) => writeln!(text, "raises {event}"),
-                Action::Skipped(provider) => writeln!(text, "skipped: component `{provider}` is busy"),
-            };
-        }
-        text
-    }
-}
-
-const fn level_name(level: Level) -> &'static str {
-    match level {
-        Level::Error => "error",
-        Level::Warning => "warning",
-        Level::Info => "info",
-        Level::Debug => "debug",
     }
 }
 
