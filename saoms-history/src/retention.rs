@@ -19,10 +19,12 @@ const STEPS: f64 = 100.0;
 /// Number of records of earlier runs that are removed in one step.
 const AT_ONCE: i64 = 50_000;
 
-/// Records of runs that ended before a time, or were killed.
-const OF_EARLIER_RUNS: &str = "DELETE FROM records WHERE (run, id) IN (SELECT records.run, id FROM records JOIN runs USING (run) \
-    WHERE runs.run <> ?1 AND coalesce(julianday(ended), julianday(began) + records.time_s / 86400.0) \
-    < julianday('now') - ?2 / 86400.0 LIMIT ?3)";
+/// Records of runs that ended before a time, or were killed. `CROSS JOIN` has SQLite find the runs first: no record is
+/// older than the begin of its run, so that it looks at records of runs alone that may have old ones.
+pub(crate) const OF_EARLIER_RUNS: &str = "DELETE FROM records WHERE (run, id) IN ( \
+    SELECT t.run, t.id FROM runs r CROSS JOIN records t ON t.run = r.run \
+    WHERE r.run <> ?1 AND julianday(coalesce(ended, began)) < julianday('now') - ?2 / 86400.0 \
+    AND (ended IS NOT NULL OR julianday(began) + t.time_s / 86400.0 < julianday('now') - ?2 / 86400.0) LIMIT ?3)";
 
 impl Retention {
     pub(crate) fn of(keep: Duration) -> Retention {

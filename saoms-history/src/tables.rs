@@ -164,14 +164,16 @@ const fn kind(column: &HistoryColumn) -> &'static str {
 const RUN: &str = "the run";
 const TIME: &str = "when, in seconds of the run";
 
-/// The statements that make the table of a crate of components, and what finds its rows of a run.
-pub(crate) fn statements(table: &HistoryTable) -> [String; 2] {
+/// The statements that make the table of a crate of components, and what finds its rows of a run: by their times, and
+/// in the order in which they were written, which a program wants that goes on from them.
+pub(crate) fn statements(table: &HistoryTable) -> [String; 3] {
     let columns = table.columns.iter().map(|column| (column.name, kind(column), column.doc));
     let columns = [("run", "INTEGER NOT NULL", RUN), ("time_s", "REAL NOT NULL", TIME)].into_iter().chain(columns);
     let name = table.name;
     [
         format!("{}) STRICT", table_start(name, table.doc, columns)),
         format!("CREATE INDEX IF NOT EXISTS {name}_of_run ON {name} (run, time_s)"),
+        format!("CREATE INDEX IF NOT EXISTS {name}_as_written ON {name} (run)"),
     ]
 }
 

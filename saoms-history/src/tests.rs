@@ -13,6 +13,7 @@ use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 
+use crate::retention::OF_EARLIER_RUNS;
 use crate::writer::{Writer, earlier, open};
 use crate::{History, HistoryError, HistoryEvents, HistoryRun, Questions};
 
@@ -241,12 +242,50 @@ fn rows_of_earlier_programs_come_one_by_one_as_they_were_written() {
     last.each_earlier((0, &TABLES[0]), |time_s, row| read.push((time_s, row.values[0].clone()))).unwrap();
     let expected = [(1.0, "a"), (3.0, "b"), (2.0, "c"), (3.0, "d"), (4.0, "e"), (4.0, "f")];
     assert_eq!(read, expected.map(|(time_s, bell)| (time_s, HistoryValue::from(bell))));
-    // Nothing is sorted, which would take as much memory or space as there are rows.
+    // Nothing is sorted, which would take as much memory or space as there are rows, and no rows of other fleets are
+    // looked at.
+    let steps = plan(&path, &earlier(&TABLES[0]));
+    assert!(!steps.iter().any(|step| step.starts_with("SCAN") || step.contains("B-TREE")), "{steps:?}");
+}
+
+#[test]
+fn old_records_are_looked_for_in_runs_alone_that_may_have_some() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("h.db");
+    drop(begun(&path, &Told::default()));
+    let steps = plan(&path, OF_EARLIER_RUNS);
+    let scans: Vec<&String> = steps.iter().filter(|step| step.starts_with("SCAN")).collect();
+    assert_eq!(scans, ["SCAN r"], "{steps:?}");
     let connection = Connection::open(&path).unwrap();
-    let mut plan = connection.prepare(&format!("EXPLAIN QUERY PLAN {}", earlier(&TABLES[0]))).unwrap();
-    let steps = plan.query_map([1], |row| row.get::<_, String>(3)).unwrap();
-    let steps: Vec<String> = steps.map(Result::unwrap).collect();
-    assert!(steps[0] == "SCAN t" && !steps.iter().any(|step| step.contains("B-TREE")), "{steps:?}");
+    let ago = |hours: u32| format!("strftime('%Y-%m-%dT%H:%M:%fZ', 'now', '-{hours} hours')");
+    // Two that ended, one of them long ago, and one that was killed: its first record is old.
+    for (began, ended) in [(9, Some(7)), (9, Some(1)), (6, None)] {
+        let ended = ended.map_or_else(|| "NULL".to_owned(), ago);
+        let run = format!(
+            "INSERT INTO runs (name, composites, version, clock, seed, began, ended) \
+             VALUES ('hall', '[]', '1', 'real', '1', {}, {ended})",
+            ago(began)
+        );
+        connection.execute(&run, []).unwrap();
+        let record = "INSERT INTO records (run, id, time_s, component, phase, text) \
+                      VALUES (last_insert_rowid(), ?1, ?2, 'Robot1', 'effect', 'moved')";
+        for (id, time_s) in [(1, 60.0), (2, 7100.0)] {
+            connection.execute(record, rusqlite::params![id, time_s]).unwrap();
+        }
+    }
+    let removed = connection.execute(OF_EARLIER_RUNS, rusqlite::params![1, 5.0 * 3600.0, 50_000]).unwrap();
+    let left = ask(&path, "select run, id from records order by 1, 2");
+    let row = |run, id| vec![HistoryValue::Integer(run), HistoryValue::Integer(id)];
+    assert_eq!((removed, left), (3, vec![row(3, 1), row(3, 2), row(4, 2)]));
+}
+
+/// The steps in which SQLite answers.
+fn plan(path: &Path, statement: &str) -> Vec<String> {
+    let connection = Connection::open(path).unwrap();
+    let mut plan = connection.prepare(&format!("EXPLAIN QUERY PLAN {statement}")).unwrap();
+    let values = vec![1; plan.parameter_count()];
+    let steps = plan.query_map(rusqlite::params_from_iter(values), |row| row.get::<_, String>(3)).unwrap();
+    steps.map(Result::unwrap).collect()
 }
 
 #[test]

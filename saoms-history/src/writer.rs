@@ -111,14 +111,15 @@ pub(crate) fn refused(path: &Path, error: &rusqlite::Error) -> HistoryError {
     HistoryError::Database { path: path.to_owned(), message: error.to_string() }
 }
 
-/// What asks for the rows that earlier runs with the same state wrote to a table. `CROSS JOIN` has SQLite walk through
-/// the table, in whose order the rows are wanted: it would sort all of them otherwise.
+/// What asks for the rows that earlier runs with the same state wrote to a table, in the order in which they were
+/// written: such runs follow each other. `CROSS JOIN` has SQLite find the runs first: a history may have rows of many
+/// more, and an index has those of a run in the order that is wanted, so that nothing is sorted.
 pub(crate) fn earlier(table: &HistoryTable) -> String {
     let columns: String = table.columns.iter().map(|column| format!(", t.{}", column.name)).collect();
     format!(
-        "SELECT t.time_s{columns} FROM {} t CROSS JOIN runs r USING (run) CROSS JOIN runs own \
-         ON own.run = ? AND own.state = r.state \
-         WHERE r.run < own.run AND (r.undone_from_s IS NULL OR t.time_s < r.undone_from_s) ORDER BY t.rowid",
+        "SELECT t.time_s{columns} FROM runs own CROSS JOIN runs r ON r.state = own.state AND r.run < own.run \
+         CROSS JOIN {} t ON t.run = r.run \
+         WHERE own.run = ? AND (r.undone_from_s IS NULL OR t.time_s < r.undone_from_s) ORDER BY r.run, t.rowid",
         table.name
     )
 }

@@ -71,6 +71,7 @@ fn tables_are_documented_and_have_keys_and_indexes() {
           piece  text  `luggage` or `visit`
           number  bigint  the number of the luggage, or of the visit from 1 on
           outcome  text  `delivered` or `given up`
+          CREATE INDEX deliveries_as_written ON "Halle 7".deliveries (run)
           CREATE INDEX deliveries_of_run ON "Halle 7".deliveries (run, time_s)
         alerts: What needed a person
           run  bigint  the run
