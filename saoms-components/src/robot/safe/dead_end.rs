@@ -3,7 +3,8 @@
 //! A robot in a dead end has one way out. One that stands there and wants to go in cannot ask it to make way: it makes
 //! way itself, whatever its priority, and the blocks outside are those of the robot that comes out. A robot that rests
 //! in a dead end, and is asked for its block, leaves it in the same way, and does not come back before the other one
-//! is in.
+//! is in. Nor does one that wanted to go in take the block again that it left to one that comes out: it would come out
+//! of a bay itself, with the same right, and the two would take turns there for ever.
 
 use saoms_api::Field;
 
@@ -11,15 +12,15 @@ use crate::grid::Block;
 use crate::robot::Routes;
 
 /// Maximum number of blocks of a dead end.
-const LARGEST: usize = 16;
+const LARGEST: usize = 64;
 
 /// Number of executions, times the tempo of other robots, for which a robot keeps out of a dead end that it left.
 const KEEPS_OUT: u32 = 32;
 
-/// A robot that leaves a dead end to another one.
+/// A robot that leaves a block to another one: in a dead end, or before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
 pub(super) struct Leaving {
-    /// Block in the dead end that the other robot wants.
+    /// Block that the other robot wants.
     pub(super) block: Block,
     /// The other robot.
     pub(super) asker: u32,
@@ -34,16 +35,18 @@ impl Leaving {
 }
 
 /// The neighbour over which alone a robot leaves a dead end; `None` where it is in none. A dead end has no way around
-/// in it, so that two robots cannot get past each other.
+/// in it, so that two robots cannot get past each other. Where a map has no way around at all, the smaller side is one.
 pub(super) fn way_out(at: Block, routes: &Routes) -> Option<Block> {
-    let mut outs = at.neighbours().into_iter().filter(|out| routes.is_free(*out) && is_dead_end(at, *out, routes));
-    let out = outs.next()?;
-    // Where the rest of the map is no larger, none is the way out.
-    outs.next().is_none().then_some(out)
+    let leads_out = |out: &Block| {
+        let size = size_behind(at, *out, LARGEST, routes);
+        size.is_some_and(|size| size_behind(*out, at, size, routes).is_none())
+    };
+    at.neighbours().into_iter().filter(|out| routes.is_free(*out)).find(leads_out)
 }
 
-/// True if few blocks can be reached from a block without its neighbour `out`, each in one way.
-fn is_dead_end(at: Block, out: Block, routes: &Routes) -> bool {
+/// Number of blocks that can be reached from a block without its neighbour `out`, each in one way; `None` if there are
+/// more than `most`, or several ways.
+fn size_behind(at: Block, out: Block, most: usize, routes: &Routes) -> Option<usize> {
     // Each block with the one from which it was reached.
     let mut reached = [(at, out); LARGEST];
     let (mut count, mut next) = (1, 0);
@@ -54,15 +57,15 @@ fn is_dead_end(at: Block, out: Block, routes: &Routes) -> bool {
                 continue;
             }
             let is_known = beside == out || reached[..count].iter().any(|(known, _)| *known == beside);
-            if is_known || count == LARGEST {
-                return false;
+            if is_known || count >= most {
+                return None;
             }
             reached[count] = (beside, block);
             count += 1;
         }
         next += 1;
     }
-    true
+    Some(count)
 }
 
 #[cfg(test)]
@@ -84,5 +87,10 @@ mod tests {
         routes.learn(Map::read(".....").unwrap(), Block::new(0, 0));
         let out = |x: i32| way_out(Block::new(x, 0), &routes).map(|out| out.x);
         assert_eq!((out(0), out(2), out(4)), (Some(1), None, Some(3)));
+        // A map without a way around is a dead end up to its middle.
+        routes.learn(Map::read("..@..\n@.@.@\n.....\n@@.@@\n@@.@@").unwrap(), Block::new(0, 0));
+        let out = |x: i32, y: i32| way_out(Block::new(x, y), &routes).map(|out| (out.x, out.y));
+        assert_eq!([out(0, 0), out(1, 0), out(1, 1)], [Some((1, 0)), Some((1, 1)), Some((1, 2))]);
+        assert_eq!([out(1, 2), out(2, 3), out(2, 2)], [Some((2, 2)), Some((2, 2)), None]);
     }
 }

@@ -41,7 +41,7 @@ pub(crate) struct Traffic {
     waited: u32,
     /// Block that it does not try again while the same robot holds it.
     avoided: Option<(Block, u32)>,
-    /// The dead end that it leaves, or has left, to another robot.
+    /// The block that it leaves, or has left, to another robot.
     leaving: Option<Leaving>,
 }
 
@@ -281,6 +281,15 @@ impl Traffic {
         {
             self.leaving = Some(Leaving::new(at, asker.robot, claim.tempo));
         }
+        // It wanted to go in itself, and is not to be back before the one that comes out is through.
+        if wanted != at
+            && on_the_way
+            && coming_out.is_some()
+            && coming_out == own_way
+            && let Some(other) = self.near.iter().find(|peer| peer.wanted == at && Some(peer.block) == coming_out)
+        {
+            self.leaving = Some(Leaving::new(at, other.robot, claim.tempo));
+        }
         wanted
     }
 
@@ -296,7 +305,7 @@ impl Traffic {
         comes.filter(|block| *block != at).find(|block| way_out(*block, routes) == Some(at))
     }
 
-    /// The dead end that the robot leaves to another one, until that is in or has gone elsewhere.
+    /// The block that the robot leaves to another one, until that is there or has gone elsewhere.
     fn still_leaving(&self, leaving: Leaving) -> Option<Leaving> {
         let asker = self.near.iter().find(|peer| peer.robot == leaving.asker)?;
         let left = leaving.left.checked_sub(1)?;

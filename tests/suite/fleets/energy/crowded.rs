@@ -7,22 +7,22 @@ use saoms_testkit::{Fleet, Run};
 const HOUR: Duration = Duration::from_secs(3600);
 
 /// The charger of a robot, the block where it starts, and its battery there.
-type RobotOfSite = ((i32, i32), (i32, i32), f64);
+pub(super) type RobotOfSite = ((i32, i32), (i32, i32), f64);
 
 /// A site with robots that all have the same battery.
-struct Site<'s> {
+pub(super) struct Site<'s> {
     /// The rows of the map.
-    map: &'s str,
+    pub(super) map: &'s str,
     /// Milliseconds of a move, and of collecting or depositing.
-    times: (u32, u32),
+    pub(super) times: (u32, u32),
     /// Percent of a battery: for a block, for a second off the charger, and gained in a second at the charger.
-    battery: (f64, f64, f64),
-    has_zone: bool,
+    pub(super) battery: (f64, f64, f64),
+    pub(super) has_zone: bool,
     /// First column of a second zone.
-    border: Option<u32>,
-    assignment: &'s str,
-    robots: &'s [RobotOfSite],
-    scenario: &'s str,
+    pub(super) border: Option<u32>,
+    pub(super) assignment: &'s str,
+    pub(super) robots: &'s [RobotOfSite],
+    pub(super) scenario: &'s str,
 }
 
 impl Site<'_> {
@@ -70,7 +70,15 @@ impl Site<'_> {
     }
 
     fn run(&self, seed: u64) -> Run {
-        self.fleet().run(seed, HOUR)
+        self.run_for(seed, HOUR)
+    }
+
+    pub(super) fn run_for(&self, seed: u64, limit: Duration) -> Run {
+        self.fleet().run(seed, limit)
+    }
+
+    pub(super) fn diagnostics(&self) -> String {
+        self.fleet().diagnostics()
     }
 }
 

@@ -3,6 +3,7 @@
 mod battery;
 mod charging;
 mod crowded;
+mod drawn;
 mod handling;
 mod relief;
 mod strain;
