@@ -1,7 +1,9 @@
 //! A part of a recording as a recording of its own.
 
 use std::io::{self, Write};
+use std::sync::Arc;
 
+use crate::Channel;
 use crate::file::{FileWriter, Item};
 use crate::reader::{Part, RecordedMessage};
 
@@ -12,6 +14,8 @@ const AT_ONCE: usize = 1 << 20;
 pub struct Excerpt<'a> {
     to: &'a mut dyn Write,
     writer: FileWriter,
+    /// The channels so far, with their numbers.
+    channels: Vec<(Arc<Channel>, u16)>,
     items: Vec<Item>,
     bytes: Vec<u8>,
 }
@@ -19,7 +23,7 @@ pub struct Excerpt<'a> {
 impl<'a> Excerpt<'a> {
     /// Begins a file.
     pub fn begin(to: &'a mut dyn Write) -> Excerpt<'a> {
-        Excerpt { to, writer: FileWriter::begin(), items: Vec::new(), bytes: Vec::new() }
+        Excerpt { to, writer: FileWriter::begin(), channels: Vec::new(), items: Vec::new(), bytes: Vec::new() }
     }
 
     /// Adds a part.
@@ -29,7 +33,7 @@ impl<'a> Excerpt<'a> {
     pub fn add(&mut self, part: &Part) -> io::Result<()> {
         match part {
             Part::Message(RecordedMessage { channel, time, component, bytes }) => {
-                let number = self.writer.channel(&channel.form);
+                let number = self.channel(channel)?;
                 self.bytes.extend_from_slice(bytes);
                 let (sender, end) = (component.clone(), self.bytes.len());
                 self.items.push(Item { channel: number, sender, time: *time, end });
@@ -44,6 +48,20 @@ impl<'a> Excerpt<'a> {
                 self.flush()?;
                 self.writer.metadata(name, values);
                 Ok(())
+            }
+        }
+    }
+
+    /// The number of a channel, of which a file has so many at most.
+    fn channel(&mut self, channel: &Arc<Channel>) -> io::Result<u16> {
+        if let Some((_, number)) = self.channels.iter().find(|(known, _)| Arc::ptr_eq(known, channel)) {
+            return Ok(*number);
+        }
+        match self.writer.channel(&channel.form) {
+            0 => Err(io::Error::other("it has too many topics")),
+            number => {
+                self.channels.push((Arc::clone(channel), number));
+                Ok(number)
             }
         }
     }

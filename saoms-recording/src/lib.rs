@@ -7,7 +7,6 @@
 mod error;
 mod excerpt;
 mod file;
-mod format;
 mod messages;
 mod queue;
 mod reader;

@@ -4,9 +4,6 @@ use saoms_api::builtin_interfaces::Time;
 use saoms_api::{Level, Message};
 use saoms_core::journal::JournalEntry;
 
-/// Nanoseconds of a second.
-const SECOND: u64 = 1_000_000_000;
-
 /// A line of the log, as ROS 2 has it: tools show it as such.
 #[derive(Clone, Debug, Message)]
 #[message(name = "rcl_interfaces/msg/Log", constants(
@@ -98,7 +95,6 @@ impl JournalRecord {
 }
 
 /// Nanoseconds as ROS 2 has them.
-fn stamp(time: u64) -> Time {
-    let seconds = i32::try_from(time / SECOND).unwrap_or(i32::MAX);
-    Time { sec: seconds, nanosec: (time % SECOND) as u32 }
+fn stamp(nanos: u64) -> Time {
+    saoms_api::Time::from_nanos(nanos).into()
 }

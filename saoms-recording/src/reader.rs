@@ -1,21 +1,27 @@
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt;
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use mcap::records::{AttachmentHeader, Metadata, Record, SchemaHeader, op};
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::{MAGIC, McapError, McapResult, parse_record};
 use saoms_api::host::cdr;
 use saoms_registry::schema::Schema;
 use serde_json::Value;
 
 use crate::RecordingError;
 use crate::file::{ChannelForm, END, ROLE, RUN, SCHEMA, SENDERS};
-use crate::format::{LARGEST, LZ4, MAGIC, Take, checksum, decompressed, op};
 use crate::messages::Senders;
 
-/// The length of operation and length of a record.
-const HEAD: usize = 9;
+/// No record and no chunk is larger: what says so is damaged.
+const LARGEST: usize = 1 << 28;
+/// Bytes that are read at once: no memory for what only a damaged length says is there.
+const AT_ONCE: usize = 1 << 16;
+
+const DAMAGED: &str = "it is damaged";
 
 /// A channel of a recording.
 pub struct Channel {
@@ -65,11 +71,8 @@ pub enum Part {
 /// A file that was cut off is read as far as it goes.
 pub struct Reader {
     path: PathBuf,
-    file: BufReader<File>,
-    /// What was read at once and is not looked at yet: a chunk.
-    chunk: Vec<u8>,
-    /// The place of the next record there.
-    place: usize,
+    file: File,
+    records: LinearReader,
     schemas: HashMap<u16, (String, String, Vec<u8>)>,
     channels: HashMap<u16, Arc<Channel>>,
     senders: VecDeque<Arc<str>>,
@@ -122,18 +125,22 @@ impl Reader {
     pub fn open(path: &Path) -> Result<Reader, RecordingError> {
         let path = path.to_owned();
         let failed = |error| RecordingError::Io { path: path.clone(), error };
-        let mut file = BufReader::new(File::open(&path).map_err(failed)?);
+        let mut file = File::open(&path).map_err(failed)?;
         let mut magic = [0; MAGIC.len()];
         match file.read_exact(&mut magic) {
             Ok(()) if magic == *MAGIC => {}
             Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => return Err(failed(error)),
             _ => return Err(RecordingError::Foreign { path }),
         }
+        let options = LinearReaderOptions::default()
+            .with_skip_start_magic(true)
+            // A chunk whose checksum is wrong has nothing that can be believed.
+            .with_prevalidate_chunk_crcs(true)
+            .with_record_length_limit(LARGEST);
         Ok(Reader {
             path,
             file,
-            chunk: Vec::new(),
-            place: 0,
+            records: LinearReader::new_with_options(options),
             schemas: HashMap::new(),
             channels: HashMap::new(),
             senders: VecDeque::new(),
@@ -150,10 +157,35 @@ impl Reader {
     /// The system refuses to read, or the file has a form that this program does not know.
     pub fn next_part(&mut self) -> Result<Option<Part>, RecordingError> {
         while !self.has_ended {
-            if let Some(part) = self.record()? {
-                return Ok(Some(part));
+            let step = match self.records.next_event() {
+                None => Step::End,
+                Some(Ok(LinearReadEvent::ReadRequest(wanted))) => Step::Fill(wanted),
+                Some(Ok(LinearReadEvent::Record { opcode, data })) => Step::Record(record(opcode, data)),
+                Some(Err(error)) => Step::Record(Err(error)),
+            };
+            let record = match step {
+                Step::End => break,
+                Step::Fill(wanted) => {
+                    self.fill(wanted)?;
+                    continue;
+                }
+                Step::Record(record) => record,
+            };
+            match record.map(|record| record.map_or(Some(None), |record| self.part(record))) {
+                Ok(Some(Some(part))) => return Ok(Some(part)),
+                Ok(Some(None)) => {}
+                Ok(None) => self.is_cut(DAMAGED),
+                Err(McapError::UnexpectedEof) => self.is_cut("it was not finished"),
+                Err(McapError::UnsupportedCompression(name)) => {
+                    self.has_ended = true;
+                    let message = format!("it is compressed by `{name}`, which this program does not read");
+                    return Err(RecordingError::Form { path: self.path.clone(), message });
+                }
+                // What follows a place that is damaged is not looked at.
+                Err(_) => self.is_cut(DAMAGED),
             }
         }
+        self.has_ended = true;
         Ok(None)
     }
 
@@ -178,54 +210,18 @@ impl Reader {
         self.channels.values().filter(|channel| !channel.has_senders())
     }
 
-    /// Reads a record. It may be no part.
-    fn record(&mut self) -> Result<Option<Part>, RecordingError> {
-        if self.place < self.chunk.len() {
-            let chunk = std::mem::take(&mut self.chunk);
-            let mut rest = Take(&chunk[self.place..]);
-            let found = rest.record().ok_or(()).and_then(|(operation, content)| self.part(operation, content));
-            self.place = chunk.len() - rest.0.len();
-            self.chunk = chunk;
-            return Ok(found.unwrap_or_else(|()| self.is_damaged()));
-        }
-        let mut head = [0; HEAD];
-        if !self.fill(&mut head)? {
-            return Ok(None);
-        }
-        let mut taken = Take(&head);
-        let (operation, length) = (taken.number8().unwrap_or(0), taken.number64().unwrap_or(0));
-        if length > LARGEST || operation == 0 {
-            return Ok(self.is_damaged());
-        }
-        let mut content = Vec::new();
-        // No memory for what only a damaged length says is there.
-        let read = (&mut self.file).take(length).read_to_end(&mut content);
-        read.map_err(|error| RecordingError::Io { path: self.path.clone(), error })?;
-        if (content.len() as u64) < length {
-            self.is_cut("it was not finished");
-            return Ok(None);
-        }
-        match operation {
-            op::CHUNK => self.open_chunk(&content),
-            op::FOOTER => {
-                let mut magic = [0; MAGIC.len()];
-                self.has_ended = true;
-                Ok(if self.fill(&mut magic)? && magic != *MAGIC { self.is_damaged() } else { None })
+    /// Has the reader of records get more of the file.
+    fn fill(&mut self, wanted: usize) -> Result<(), RecordingError> {
+        let place = self.records.insert(wanted.min(AT_ONCE));
+        let count = loop {
+            match self.file.read(place) {
+                Ok(count) => break count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(RecordingError::Io { path: self.path.clone(), error }),
             }
-            _ => Ok(self.part(operation, &content).unwrap_or_else(|()| self.is_damaged())),
-        }
-    }
-
-    /// Fills bytes from the file; false at its end.
-    fn fill(&mut self, bytes: &mut [u8]) -> Result<bool, RecordingError> {
-        match self.file.read_exact(bytes) {
-            Ok(()) => Ok(true),
-            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                self.is_cut("it was not finished");
-                Ok(false)
-            }
-            Err(error) => Err(RecordingError::Io { path: self.path.clone(), error }),
-        }
+        };
+        self.records.notify_read(count);
+        Ok(())
     }
 
     fn is_cut(&mut self, why: &str) {
@@ -233,74 +229,35 @@ impl Reader {
         self.cut = Some(why.to_owned());
     }
 
-    /// What follows a place that is damaged is not looked at.
-    fn is_damaged(&mut self) -> Option<Part> {
-        self.is_cut("it is damaged");
-        None
-    }
-
-    fn open_chunk(&mut self, content: &[u8]) -> Result<Option<Part>, RecordingError> {
-        let mut content = Take(content);
-        let head = (|| {
-            let (_, _) = (content.number64()?, content.number64()?);
-            let (size, sum, compression) = (content.number64()?, content.number32()?, content.text()?);
-            let length = content.number64()?;
-            Some((size, sum, compression, content.bytes(length)?))
-        })();
-        let Some((size, sum, compression, records)) = head else { return Ok(self.is_damaged()) };
-        let records = match &*compression {
-            "" => Ok(records.to_vec()),
-            LZ4 if size <= LARGEST => decompressed(records, size),
-            LZ4 => Err(io::ErrorKind::InvalidData.into()),
-            other => {
-                let message = format!("it is compressed by `{other}`, which this program does not read");
-                return Err(RecordingError::Form { path: self.path.clone(), message });
+    /// The part that a record is, if it is one; nothing if it does not fit to those before it.
+    fn part(&mut self, record: Record<'static>) -> Option<Option<Part>> {
+        match record {
+            Record::Schema { header: SchemaHeader { id, name, encoding }, data } => {
+                self.schemas.insert(id, (name, encoding, data.into_owned()));
             }
-        };
-        match records {
-            Ok(records) if sum == 0 || sum == checksum(&records) => {
-                (self.chunk, self.place) = (records, 0);
-                Ok(None)
+            Record::Channel(channel) => {
+                let schema = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
+                let (topic, encoding, metadata) = (channel.topic, channel.message_encoding, channel.metadata);
+                let known = metadata.get(SCHEMA).and_then(|schema| Schema::parse(schema).ok());
+                let form = ChannelForm { topic, schema, encoding, metadata };
+                // The end of a file says them again.
+                self.channels.entry(channel.id).or_insert_with(|| Arc::new(Channel { form, schema: known }));
             }
-            _ => Ok(self.is_damaged()),
+            Record::Message { header, data } => {
+                return self.message(header.channel_id, header.log_time, data.into_owned());
+            }
+            Record::Attachment { header: AttachmentHeader { log_time: time, name, media_type, .. }, data, .. } => {
+                let data = data.into_owned();
+                return Some(Some(Part::File(RecordedFile { name, media_type, data, time })));
+            }
+            Record::Metadata(values) => return Some(Some(self.values(values))),
+            _ => {}
         }
-    }
-
-    /// The part that a record is, if it is one; an error if its content is not that of such a record.
-    fn part(&mut self, operation: u8, content: &[u8]) -> Result<Option<Part>, ()> {
-        let mut content = Take(content);
-        match operation {
-            op::SCHEMA => self.schema(&mut content).map(|()| None),
-            op::CHANNEL => self.channel(&mut content).map(|()| None),
-            op::MESSAGE => self.message(content),
-            op::ATTACHMENT => attachment(&mut content).map(|file| Some(Part::File(file))),
-            op::METADATA => self.values(&mut content).map(Some),
-            _ => Some(None),
-        }
-        .ok_or(())
-    }
-
-    fn schema(&mut self, content: &mut Take<'_>) -> Option<()> {
-        let (id, name, encoding) = (content.number16()?, content.text()?, content.text()?);
-        self.schemas.insert(id, (name, encoding, content.sized()?.to_vec()));
-        Some(())
-    }
-
-    fn channel(&mut self, content: &mut Take<'_>) -> Option<()> {
-        let (id, schema) = (content.number16()?, content.number16()?);
-        let (topic, encoding, metadata) = (content.text()?, content.text()?, content.map()?);
-        let schema = self.schemas.get(&schema).cloned().unwrap_or_default();
-        let known = metadata.get(SCHEMA).and_then(|schema| Schema::parse(schema).ok());
-        let form = ChannelForm { topic, schema, encoding, metadata };
-        // The end of a file says them again.
-        self.channels.entry(id).or_insert_with(|| Arc::new(Channel { form, schema: known }));
-        Some(())
+        Some(None)
     }
 
     /// The message, if it is one of a topic, of the journal or of the log.
-    fn message(&mut self, mut content: Take<'_>) -> Option<Option<Part>> {
-        let (id, _, time, _) = (content.number16()?, content.number32()?, content.number64()?, content.number64()?);
-        let bytes = content.0.to_vec();
+    fn message(&mut self, id: u16, time: u64, bytes: Vec<u8>) -> Option<Option<Part>> {
         let channel = Arc::clone(self.channels.get(&id)?);
         if channel.has_senders() {
             let Senders { components, senders } = cdr::decode(&bytes).unwrap_or_default();
@@ -313,22 +270,50 @@ impl Reader {
         Some(Some(Part::Message(RecordedMessage { channel, time, component, bytes })))
     }
 
-    fn values(&mut self, content: &mut Take<'_>) -> Option<Part> {
-        let (name, values) = (content.text()?, content.map()?);
+    fn values(&mut self, Metadata { name, metadata: values }: Metadata) -> Part {
         let number = |name: &str| values.get(name).and_then(|number| number.parse().ok());
         match &*name {
             RUN => self.start = number("start_ns"),
             END => self.lost = number("lost"),
             _ => {}
         }
-        Some(Part::Values(name, values))
+        Part::Values(name, values)
     }
 }
 
-fn attachment(content: &mut Take<'_>) -> Option<RecordedFile> {
-    let (time, _) = (content.number64()?, content.number64()?);
-    let (name, media_type, length) = (content.text()?, content.text()?, content.number64()?);
-    Some(RecordedFile { name, media_type, data: content.bytes(length)?.to_vec(), time })
+/// What the reader of records wants, or has.
+enum Step {
+    /// The end of the file.
+    End,
+    /// So many bytes of the file.
+    Fill(usize),
+    Record(McapResult<Option<Record<'static>>>),
+}
+
+/// A record that may be a part of a recording, or that a part needs; `None` for any other.
+fn record(operation: u8, content: &[u8]) -> McapResult<Option<Record<'static>>> {
+    match operation {
+        op::ATTACHMENT if !has_all_of_attachment(content) => {
+            Err(McapError::BadAttachmentLength { header: 0, available: content.len() as u64 })
+        }
+        op::SCHEMA | op::CHANNEL | op::MESSAGE | op::ATTACHMENT | op::METADATA => {
+            parse_record(operation, content).map(|record| Some(record.into_owned()))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// True if an attachment is as long as its lengths say: `mcap` 0.26 panics at one that ends before its checksum.
+fn has_all_of_attachment(content: &[u8]) -> bool {
+    const TIMES: usize = 16;
+    const DATA: usize = 8;
+    const CHECKSUM: usize = 4;
+    let after_text = |start: usize| {
+        let length = content.get(start..)?.first_chunk::<4>()?;
+        start.checked_add(4)?.checked_add(usize::try_from(u32::from_le_bytes(*length)).ok()?)
+    };
+    let head = after_text(TIMES).and_then(after_text).and_then(|end| end.checked_add(DATA + CHECKSUM));
+    head.is_some_and(|end| end <= content.len())
 }
 
 impl fmt::Debug for Reader {

@@ -83,6 +83,36 @@ fn what_is_written_is_read_and_copied_also_if_it_was_cut_off() {
     assert!(error.contains("is no recording"), "{error}");
 }
 
+#[test]
+fn a_file_that_is_damaged_anywhere_is_read_without_a_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, wrong) = (folder.path().join("w"), folder.path().join("x"));
+    written(&path, 0);
+    let file = fs::read(&path).unwrap();
+    let mut told = 0;
+    for place in (8..file.len()).step_by(5) {
+        let mut bytes = file.clone();
+        bytes[place] ^= 0x55;
+        fs::write(&wrong, bytes).unwrap();
+        let mut reader = Reader::open(&wrong).unwrap();
+        let mut parts = 0;
+        let ended = loop {
+            match reader.next_part() {
+                Ok(Some(_)) => parts += 1,
+                ended => break ended,
+            }
+        };
+        assert!(parts <= 6);
+        told += u64::from(ended.is_err() || reader.cut().is_some());
+    }
+    assert!(told > 50, "{told}");
+    // An attachment without its checksum.
+    let mut bytes = [mcap::MAGIC, &[9, 32], &[0; 7]].concat();
+    bytes.extend([0; 32]);
+    fs::write(&wrong, bytes).unwrap();
+    assert_eq!(read(&wrong), (vec![], Some("it is damaged".to_owned())));
+}
+
 /// A disk with so much room.
 struct Disk(Vec<u8>, usize);
 
