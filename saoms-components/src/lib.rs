@@ -8,6 +8,7 @@
 pub mod broker;
 pub mod console;
 mod dashboard;
+mod drawing;
 pub mod environment;
 mod gone;
 pub mod grid;

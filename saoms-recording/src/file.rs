@@ -72,8 +72,11 @@ pub(crate) struct FileWriter {
     /// `None` once the file has its end.
     mcap: Option<Writer<NoSeek<Unwritten>>>,
     unwritten: Unwritten,
-    /// Bytes of the messages of the present chunk.
+    /// Bytes that are in the file.
+    place: u64,
+    /// Bytes of the messages of the present chunk, and the number of chunks before it.
     chunk: usize,
+    chunks: u64,
     /// The number of messages of each channel, by its number.
     counts: HashMap<u16, u32>,
     senders: u16,
@@ -108,14 +111,14 @@ impl FileWriter {
             .profile("ros2")
             .library(concat!("saoms ", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Lz4))
-            // Chunks end by time, too.
+            // Chunks end by time, too, and are counted.
             .chunk_size(None)
             .disable_seeking(true)
             // Each chunk has a checksum of its own.
             .calculate_data_section_crc(false);
         // Memory takes everything.
         let mcap = options.create(NoSeek::new(unwritten.clone())).ok();
-        FileWriter { mcap, unwritten, chunk: 0, counts: HashMap::new(), senders: 0 }
+        FileWriter { mcap, unwritten, place: 0, chunk: 0, chunks: 0, counts: HashMap::new(), senders: 0 }
     }
 
     /// The number of a channel; 0 if there are too many.
@@ -175,6 +178,7 @@ impl FileWriter {
         // One with channels alone has to wait for a message: it would have no time.
         if std::mem::take(&mut self.chunk) > 0 {
             self.put(Writer::flush);
+            self.chunks += 1;
         }
     }
 
@@ -204,6 +208,21 @@ impl FileWriter {
         let _ = self.mcap.as_mut().map(put);
     }
 
+    /// The number of chunks, whose index is in memory until the file has its end.
+    pub(crate) fn chunks(&self) -> u64 {
+        self.chunks
+    }
+
+    /// Bytes of the file as far as it is written.
+    pub(crate) fn size(&self) -> u64 {
+        self.place + self.unwritten.lock().len() as u64
+    }
+
+    /// True if it has messages and can have more.
+    pub(crate) fn is_open(&self) -> bool {
+        self.mcap.is_some() && !self.counts.is_empty()
+    }
+
     /// Brings what was written to its place. What has no room there stays for the next time.
     pub(crate) fn bring(&mut self, to: &mut dyn Write) -> io::Result<()> {
         let mut unwritten = self.unwritten.lock();
@@ -220,6 +239,7 @@ impl FileWriter {
             }
         };
         unwritten.drain(..done);
+        self.place += done as u64;
         result
     }
 }

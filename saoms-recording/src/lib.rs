@@ -4,6 +4,7 @@
 //! [`Recording`] is the observer that writes one while a fleet runs; [`Reader`] reads it, also one that was cut off;
 //! [`Excerpt`] writes a part of it.
 
+mod drawer;
 mod error;
 mod excerpt;
 mod file;

@@ -4,11 +4,12 @@ use std::mem;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use crate::drawer::{Heard, HeardTopic};
 use crate::file::{ChannelForm, Item};
 
 /// Bytes that wait at most, beside those of one message.
 const MOST: usize = 32 << 20;
-/// Messages that wait at most.
+/// Messages that wait at most, and as many that only drawings hear.
 const MOST_ITEMS: usize = 1 << 18;
 /// Bytes that wake the thread; fewer wait until it wakes by itself.
 const WAKE: usize = 1 << 19;
@@ -20,6 +21,8 @@ pub(crate) struct Batch {
     pub(crate) channels: Vec<ChannelForm>,
     pub(crate) items: Vec<Item>,
     pub(crate) bytes: Vec<u8>,
+    /// What drawings hear, in its order.
+    pub(crate) heard: Vec<Heard>,
     /// True if nothing follows.
     pub(crate) is_last: bool,
 }
@@ -53,10 +56,16 @@ impl Queue {
         self.lock().batch.channels.push(channel);
     }
 
-    /// Adds a message, whose end is not known yet; false if there is no room.
-    pub(crate) fn put(&self, item: Item, bytes: &[u8], waits: bool) -> bool {
+    /// Has drawings hear a topic.
+    pub(crate) fn hear(&self, topic: HeardTopic) {
+        self.lock().batch.heard.push(Heard::Topic(topic));
+    }
+
+    /// Adds a message, whose end is not known yet, and what drawings hear of it; false if there is no room.
+    pub(crate) fn put(&self, recorded: Option<(Item, &[u8])>, heard: Option<Heard>, waits: bool) -> bool {
+        let more = recorded.as_ref().map_or(0, |(_, bytes)| bytes.len());
         let mut waiting = self.lock();
-        while waiting.batch.is_full_for(bytes.len()) {
+        while waiting.batch.is_full_for(more) {
             if !waits || waiting.closed {
                 return false;
             }
@@ -64,10 +73,13 @@ impl Queue {
             self.wake(&mut waiting);
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
-        waiting.batch.bytes.extend_from_slice(bytes);
-        let end = waiting.batch.bytes.len();
-        waiting.batch.items.push(Item { end, ..item });
-        if end >= WAKE || waiting.batch.items.len() >= MOST_ITEMS / 2 {
+        if let Some((item, bytes)) = recorded {
+            waiting.batch.bytes.extend_from_slice(bytes);
+            let end = waiting.batch.bytes.len();
+            waiting.batch.items.push(Item { end, ..item });
+        }
+        waiting.batch.heard.extend(heard);
+        if waiting.batch.is_much() {
             self.wake(&mut waiting);
         }
         true
@@ -93,8 +105,9 @@ impl Queue {
         empty.channels.clear();
         empty.items.clear();
         empty.bytes.clear();
+        empty.heard.clear();
         let mut waiting = self.lock();
-        while waiting.batch.bytes.len() < WAKE && !waiting.closed && !waiting.writers_sleep {
+        while !waiting.batch.is_much() && !waiting.closed && !waiting.writers_sleep {
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 break;
@@ -114,7 +127,13 @@ impl Queue {
 
 impl Batch {
     fn is_full_for(&self, more: usize) -> bool {
-        !self.items.is_empty() && (self.bytes.len() + more > MOST || self.items.len() >= MOST_ITEMS)
+        let is_full = self.bytes.len() + more > MOST || self.items.len() >= MOST_ITEMS;
+        !self.items.is_empty() && is_full || self.heard.len() >= MOST_ITEMS
+    }
+
+    /// True if the thread is woken for it.
+    fn is_much(&self) -> bool {
+        self.bytes.len() >= WAKE || self.items.len().max(self.heard.len()) >= MOST_ITEMS / 2
     }
 }
 
@@ -133,11 +152,11 @@ mod tests {
     fn a_full_queue_refuses_or_waits() {
         let queue = Queue::new();
         let large = vec![7; MOST / 2 + 1];
-        assert!(queue.put(item(), &large, false));
-        assert!(!queue.put(item(), &large, false), "there is no room");
+        assert!(queue.put(Some((item(), &large)), None, false));
+        assert!(!queue.put(Some((item(), &large)), None, false), "there is no room");
         let now = Instant::now() + Duration::from_secs(60);
         thread::scope(|scope| {
-            let waits = scope.spawn(|| queue.put(item(), &large, true));
+            let waits = scope.spawn(|| queue.put(Some((item(), &large)), None, true));
             let batch = queue.take(now, Batch::default());
             assert_eq!((batch.items.len(), batch.is_last), (1, false));
             assert!(waits.join().unwrap());

@@ -1,25 +1,26 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
-use std::fs::{File, OpenOptions};
-use std::io;
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use saoms_api::extension::DrawingRegistration;
 use saoms_api::host::{TopicDeclaration, cdr};
 use saoms_api::{Failure, Level, Message, Time};
-use saoms_core::observe::{Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage};
+use saoms_core::observe::{
+    Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage, create_file,
+};
 use saoms_core::report::RunReport;
 use saoms_core::schedule::Handle;
 use serde_json::json;
 
-use crate::file::{ChannelForm, END, Item, RUN};
+use crate::drawer::{Drawer, Heard, HeardTopic};
+use crate::file::{ChannelForm, Item};
 use crate::messages::{JournalRecord, Log};
 use crate::queue::Queue;
-use crate::writing::{Head, Writing};
+use crate::writing::{Head, Place, Writing};
 
 /// The topics of journal and log. Tools know the one of the log.
 const JOURNAL_TOPIC: &str = "/saoms/journal";
@@ -39,8 +40,10 @@ pub struct RecordedRun {
     pub node: Option<String>,
     /// The version of the program.
     pub version: String,
-    /// The topics whose messages are recorded; `None` is all.
+    /// The topics whose messages are recorded, those of drawings included; `None` is all.
     pub topics: Option<Vec<String>>,
+    /// The size of a file after which another one begins; `None` is no limit.
+    pub limit: Option<u64>,
 }
 
 /// Who hears that a recording loses something.
@@ -59,6 +62,8 @@ pub struct Recording {
     path: PathBuf,
     mode: Option<u32>,
     run: RecordedRun,
+    /// The drawings that are wanted.
+    drawings: Vec<&'static DrawingRegistration>,
     shared: Arc<Shared>,
     topics: Mutex<Topics>,
     /// The memory for the bytes of a message.
@@ -77,7 +82,8 @@ pub(crate) struct Shared {
     pub(crate) written: AtomicU64,
     /// The time of the start of the run, in nanoseconds.
     pub(crate) start: AtomicU64,
-    waits: AtomicBool,
+    /// True in virtual time, which waits for the recording.
+    pub(crate) waits: AtomicBool,
     /// True if the last message found no room.
     is_full: AtomicBool,
 }
@@ -85,11 +91,29 @@ pub(crate) struct Shared {
 /// The topics of the run.
 #[derive(Default)]
 struct Topics {
-    /// The schemas of those that are recorded.
-    schemas: HashMap<String, String>,
-    /// The channels of those that had messages; `None` where there is none.
-    channels: HashMap<Arc<str>, Option<u16>>,
+    /// Those that are wanted, as they are declared.
+    wanted: HashMap<String, WantedTopic>,
+    /// Where the messages of those go that had some.
+    ways: HashMap<Arc<str>, Way>,
+    /// The numbers of the next channel, and of the next topic that drawings hear.
     next: u16,
+    next_heard: usize,
+}
+
+struct WantedTopic {
+    schema: String,
+    is_recorded: bool,
+    /// The topic, until drawings have heard of it, and its number from then on.
+    heard: Option<Result<HeardTopic, usize>>,
+}
+
+/// Where the messages of a topic go.
+#[derive(Clone, Copy, Default)]
+struct Way {
+    channel: Option<u16>,
+    heard: Option<usize>,
+    /// True if there is no channel although there should be one.
+    is_lost: bool,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -110,8 +134,10 @@ impl Recording {
             is_full: AtomicBool::new(false),
         };
         let (shared, path) = (Arc::new(shared), path.to_owned());
-        let (topics, bytes) = (Mutex::default(), Mutex::default());
-        Recording { path, mode, run, shared, topics, bytes, thread: Mutex::default(), writing: Mutex::default() }
+        let mut drawings = DrawingRegistration::linked();
+        drawings.retain(|one| one.topics.iter().any(|drawn| run.topics.as_ref().is_none_or(|all| names(all, drawn))));
+        let (topics, bytes, thread, writing) = Default::default();
+        Recording { path, mode, run, drawings, shared, topics, bytes, thread, writing }
     }
 
     /// The number of messages, records and lines that are not in the file.
@@ -132,10 +158,9 @@ impl Recording {
         self.shared.start.load(Ordering::Relaxed).saturating_add(time.as_nanos())
     }
 
-    fn put(&self, channel: u16, sender: Option<Arc<str>>, time: u64, bytes: &[u8]) {
+    fn put(&self, recorded: Option<(Item, &[u8])>, heard: Option<Heard>) {
         let Shared { queue, events, lost, waits, is_full, .. } = &*self.shared;
-        let item = Item { channel, sender, time, end: 0 };
-        if queue.put(item, bytes, waits.load(Ordering::Relaxed)) {
+        if queue.put(recorded, heard, waits.load(Ordering::Relaxed)) {
             if is_full.swap(false, Ordering::Relaxed) {
                 events.works();
             }
@@ -148,21 +173,41 @@ impl Recording {
         }
     }
 
-    /// The channel of a topic.
-    fn channel(&self, topic: &Arc<str>) -> Option<u16> {
+    /// Puts what is of no topic of the fleet.
+    fn tell(&self, channel: u16, time: u64, bytes: &[u8]) {
+        self.put(Some((Item { channel, sender: None, time, end: 0 }, bytes)), None);
+    }
+
+    /// Where the messages of a topic go.
+    fn way(&self, topic: &Arc<str>) -> Way {
         let mut topics = lock(&self.topics);
-        if let Some(known) = topics.channels.get(topic) {
+        if let Some(known) = topics.ways.get(topic) {
             return *known;
         }
-        let schema = topics.schemas.get(&**topic).cloned();
-        let form = schema.and_then(|schema| ChannelForm::of(topic, &schema, None).ok());
-        let channel = form.filter(|_| topics.next < u16::MAX).map(|form| {
-            topics.next += 1;
-            self.shared.queue.open(form);
-            topics.next - 1
-        });
-        topics.channels.insert(Arc::clone(topic), channel);
-        channel
+        let Topics { wanted, ways, next, next_heard } = &mut *topics;
+        let mut way = Way::default();
+        if let Some(wanted) = wanted.get_mut(&**topic) {
+            let form = wanted.is_recorded.then(|| ChannelForm::of(topic, &wanted.schema, None).ok()).flatten();
+            way.channel = form.filter(|_| *next < u16::MAX).map(|form| {
+                self.shared.queue.open(form);
+                *next += 1;
+                *next - 1
+            });
+            way.is_lost = wanted.is_recorded && way.channel.is_none();
+            way.heard = wanted.heard.take().map(|heard| {
+                heard.map_or_else(
+                    |number| number,
+                    |heard| {
+                        self.shared.queue.hear(heard);
+                        *next_heard += 1;
+                        *next_heard - 1
+                    },
+                )
+            });
+            wanted.heard = way.heard.map(Err);
+        }
+        ways.insert(Arc::clone(topic), way);
+        way
     }
 
     /// Waits until the thread has written all that came.
@@ -171,12 +216,6 @@ impl Recording {
         if let Some(writing) = lock(&self.thread).take().and_then(|thread| thread.join().ok()) {
             *lock(&self.writing) = Some(writing);
         }
-    }
-
-    fn create(&self) -> io::Result<File> {
-        let mut options = OpenOptions::new();
-        options.write(true).create(true).truncate(true).mode(self.mode.unwrap_or(0o666));
-        options.open(&self.path)
     }
 
     fn head(&self, beginning: &Beginning<'_>) -> Head {
@@ -189,8 +228,13 @@ impl Recording {
             ("clock".to_owned(), clock.to_owned()),
         ]);
         values.extend(node.map(|node| ("node".to_owned(), node)));
-        Head { name: RUN, values, files }
+        Head { values, files }
     }
+}
+
+/// True if topics are named that a drawing has: in a site `/North/scene`, and else `/scene`.
+fn names(all: &[String], drawn: &str) -> bool {
+    all.iter().any(|topic| topic.starts_with('/') && topic.rsplit('/').next() == Some(drawn))
 }
 
 impl fmt::Debug for Recording {
@@ -207,7 +251,7 @@ impl Observer for Recording {
     fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
         let path = self.path.display();
         let failed = |error: &dyn fmt::Display| Failure::new(format!("`{path}` cannot be recorded to: {error}"));
-        let file = self.create().map_err(|error| failed(&error))?;
+        let file = create_file(&self.path, self.mode).map_err(|error| failed(&error))?;
         self.shared.waits.store(beginning.is_virtual, Ordering::Relaxed);
         if !beginning.is_virtual {
             let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
@@ -221,7 +265,9 @@ impl Observer for Recording {
         }
         lock(&self.topics).next = LOG + 1;
         let head = self.head(beginning);
-        let writing = Writing::begin(&self.path, file, head, Arc::clone(&self.shared));
+        let place = Place::new(self.path.clone(), self.mode, self.run.limit);
+        let drawer = (Drawer::new(&self.drawings), self.run.topics.clone());
+        let writing = Writing::begin((place, file), head, drawer, Arc::clone(&self.shared));
         let thread = thread::Builder::new().name("saoms-recording".to_owned()).spawn(|| writing.run());
         *lock(&self.thread) = Some(thread.map_err(|error| failed(&error))?);
         Ok(())
@@ -234,18 +280,23 @@ impl Observer for Recording {
         }
         let time = self.at(event.time);
         let log = Log::new(time, level, event.component.as_deref(), event.what.to_string());
-        self.put(LOG, None, time, &cdr::encode(&log));
+        self.tell(LOG, time, &cdr::encode(&log));
     }
 
     fn wants_topic(&self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
-        let is_wanted = self.run.topics.as_ref().is_none_or(|topics| topics.iter().any(|topic| topic == name));
-        if is_wanted {
+        let is_recorded = self.run.topics.as_ref().is_none_or(|topics| topics.iter().any(|topic| topic == name));
+        let is_heard = self.drawings.iter().any(|one| (one.wants)(declared));
+        if is_recorded || is_heard {
             let mut topics = lock(&self.topics);
-            if !topics.schemas.contains_key(name) {
-                topics.schemas.insert(name.to_owned(), declared.schema.to_owned());
+            // After a change of the fleet, a topic may have messages of another type.
+            if topics.wanted.get(name).is_none_or(|known| known.schema != declared.schema) {
+                let heard = is_heard.then(|| Ok(HeardTopic::of(name, declared)));
+                let wanted = WantedTopic { schema: declared.schema.to_owned(), is_recorded, heard };
+                topics.wanted.insert(name.to_owned(), wanted);
+                topics.ways.remove(name);
             }
         }
-        is_wanted
+        is_recorded || is_heard
     }
 
     fn hears_others(&self) -> bool {
@@ -254,13 +305,15 @@ impl Observer for Recording {
 
     fn message(&self, sent: &SentMessage) {
         let SentMessage { topic, component, message, .. } = sent;
-        let Some(channel) = self.channel(topic) else {
-            self.shared.lost.fetch_add(1, Ordering::Relaxed);
-            return;
-        };
+        let Way { channel, heard, is_lost } = self.way(topic);
+        self.shared.lost.fetch_add(u64::from(is_lost), Ordering::Relaxed);
         let mut bytes = lock(&self.bytes);
-        message.encode_into(&mut bytes);
-        self.put(channel, Some(Arc::clone(component)), self.at(message.header().sent), &bytes);
+        let recorded = channel.map(|channel| {
+            message.encode_into(&mut bytes);
+            let (sender, time) = (Some(Arc::clone(component)), self.at(message.header().sent));
+            (Item { channel, sender, time, end: 0 }, bytes.as_slice())
+        });
+        self.put(recorded, heard.map(|topic| Heard::Message(topic, message.clone())));
     }
 
     fn lost(&self, lost: LostEvents) {
@@ -271,7 +324,7 @@ impl Observer for Recording {
         self.shared.lost.fetch_add(records.lost, Ordering::Relaxed);
         for entry in records.entries {
             let time = self.at(entry.time());
-            self.put(JOURNAL, None, time, &cdr::encode(&JournalRecord::new(time, entry)));
+            self.tell(JOURNAL, time, &cdr::encode(&JournalRecord::new(time, entry)));
         }
         Ok(())
     }
@@ -286,9 +339,8 @@ impl Observer for Recording {
     fn end(&self, report: &RunReport) {
         let Some(mut writing) = lock(&self.writing).take() else { return };
         let time = self.at(Time::from_nanos((report.time_s * 1e9) as u64));
-        let lost = self.shared.lost.load(Ordering::Relaxed).to_string();
         let report = serde_json::to_vec(&report.without_records()).unwrap_or_default();
-        writing.end(time, &report, (END, &BTreeMap::from([("lost".to_owned(), lost)])));
+        writing.end(time, &report);
     }
 }
 

@@ -1,15 +1,19 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
-use saoms_api::{Level, Time};
-use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent};
+use saoms_api::extension::{DrawingRegistration, DrawnMessage, RunDrawing};
+use saoms_api::host::{SharedMessage, TopicDeclaration};
+use saoms_api::{Cause, Header, Level, Message, Time, Topic};
+use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent, SentMessage};
 
+use crate::drawer::{Drawer, HeardTopic};
 use crate::file::{ChannelForm, FileWriter, Item};
-use crate::{Excerpt, Part, Reader, RecordedRun, Recording, RecordingEvents, RosType};
+use crate::{Excerpt, Part, Reader, RecordedRun, Recording, RecordingEvents, RosType, drawer};
 
 const LAMP: &str = r#"{"name":"Lamp","fields":[{"name":"on","type":"bool"},{"name":"mode","type":
     {"enumeration":"uint8","values":{"WARM":0,"COLD":1}}}]}"#;
@@ -204,4 +208,109 @@ fn what_the_disk_does_not_take_is_counted_and_told_once() {
     assert!(lost.load(Ordering::Relaxed) >= 7 + 5, "{lost:?}");
     let told = told.0.lock().unwrap();
     assert!(told.len() == 1 && told[0].contains("cannot be written to `/dev/full`"), "{told:?}");
+}
+
+/// A lamp, before and after a change of the fleet.
+#[derive(Clone, Debug, Message)]
+#[message(name = "Lamp")]
+struct OldLamp {
+    on: bool,
+}
+
+#[derive(Clone, Debug, Message)]
+#[message(name = "Lamp")]
+struct NewLamp {
+    level: f64,
+}
+
+fn sent<M: Message>(nanos: u64, message: M) -> SentMessage {
+    let header = Header { sender: 0, sent: Time::from_nanos(nanos), cause: Cause::default() };
+    let message = SharedMessage::new(header, message);
+    SentMessage { topic: Arc::from("LAMP"), component: Arc::from("hall/A"), message, is_of_other: false }
+}
+
+#[test]
+fn a_topic_may_have_messages_of_another_type_after_a_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f");
+    let told = Box::new(Arc::new(Told::default()));
+    // Permissions are those that are wanted, whatever the mask of the process is.
+    let recording = Recording::new(&path, Some(0o666), RecordedRun::default(), told);
+    recording.begin(&Beginning { seed: 0, is_virtual: true, components: &[] }).unwrap();
+    assert!(recording.wants_topic("LAMP", &Topic::<OldLamp>::state("LAMP").declaration()));
+    recording.message(&sent(1, OldLamp { on: true }));
+    assert!(recording.wants_topic("LAMP", &Topic::<NewLamp>::state("LAMP").declaration()));
+    recording.message(&sent(2, NewLamp { level: 0.5 }));
+    drop(recording);
+    let lines = [r#"Some("hall/A") LAMP {"on":true}"#, r#"Some("hall/A") LAMP {"level":0.5}"#];
+    assert_eq!(read(&path), (["saoms", lines[0], lines[1]].map(str::to_owned).to_vec(), None));
+    assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o666);
+}
+
+#[test]
+fn a_full_file_is_whole_and_the_next_one_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, next) = (folder.path().join("run.mcap"), folder.path().join("run-2.mcap"));
+    let run = RecordedRun { limit: Some(1), ..RecordedRun::default() };
+    let recording = Recording::new(&path, None, run, Box::new(Arc::new(Told::default())));
+    recording.begin(&Beginning { seed: 0, is_virtual: true, components: &[] }).unwrap();
+    let event = |text: String| {
+        let what = Occurrence::Note { level: Level::Info, text };
+        recording.event(&RunEvent { time: Time::START, component: None, what });
+    };
+    // More than wakes the thread at once.
+    event("a".repeat(1 << 20));
+    while !next.exists() {
+        std::thread::yield_now();
+    }
+    event("b".to_owned());
+    drop(recording);
+    let (first, cut) = read(&path);
+    assert_eq!((first.len(), &*first[0], &*first[2], cut), (3, "saoms", "saoms.end", None));
+    let (second, cut) = read(&next);
+    assert!(second[0] == "saoms" && second[1].contains("\"msg\":\"b\"") && cut.is_none(), "{second:?}");
+}
+
+/// A drawing that says how many messages it heard.
+#[derive(Default)]
+struct Heard(u8, bool);
+
+static HEARD: DrawingRegistration =
+    DrawingRegistration { topics: &["heard"], wants: |_| true, new: || Box::new(Heard::default()) };
+
+impl RunDrawing for Heard {
+    fn topic(&mut self, _: &str, _: &TopicDeclaration<'_>) {}
+
+    fn message(&mut self, _: &str, _: &SharedMessage) {
+        self.0 += 1;
+    }
+
+    fn draw(&mut self, _: Time) -> Vec<DrawnMessage> {
+        vec![DrawnMessage { topic: "/heard".to_owned(), schema: LAMP, bytes: vec![self.0] }]
+    }
+
+    fn begin_again(&mut self) {
+        self.1 = true;
+    }
+}
+
+#[test]
+fn a_run_is_drawn_ten_times_a_second_at_most_and_only_where_it_has_changed() {
+    let mut drawer = Drawer::new(&[&HEARD]);
+    let declared = Topic::<OldLamp>::state("LAMP").declaration();
+    drawer.hear(drawer::Heard::Topic(HeardTopic::of("LAMP", &declared)), Time::as_nanos);
+    let mut drawn = Vec::new();
+    let mut draw = |drawer: &mut Drawer, before: u64| {
+        if let Some(due) = drawer.due_before(before) {
+            drawn.push((due / 1_000_000, drawer.draw(due)[0].bytes[0]));
+        }
+    };
+    for millis in [0, 0, 50, 120, 130, 700] {
+        let message = sent(millis * 1_000_000, OldLamp { on: true }).message;
+        draw(&mut drawer, millis * 1_000_000);
+        drawer.hear(drawer::Heard::Message(0, message), Time::as_nanos);
+    }
+    draw(&mut drawer, u64::MAX);
+    draw(&mut drawer, u64::MAX);
+    assert_eq!(drawn, [(0, 2), (100, 3), (200, 5), (700, 6)]);
 }

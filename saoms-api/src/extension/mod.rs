@@ -7,6 +7,7 @@
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
 //! - [`CurvesRegistration`]: figures of a run over time (`saoms run --timeline`), and which of them is its work,
 //! - [`DashboardView`]: what the page for browsers shows of the domain (`saoms run --serve`),
+//! - [`DrawingRegistration`]: what a recording shows of a run to other programs (`saoms run --record`),
 //! - [`HistoryRegistration`]: tables of the history that a run leaves (`saoms run --history`),
 //! - [`InvariantsRegistration`]: what has to hold in each run, whatever is done to the fleet (`saoms simulate`),
 //! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
@@ -23,6 +24,7 @@
 mod changes;
 mod curves;
 mod dashboard;
+mod drawing;
 mod effects;
 mod events;
 mod failures;
@@ -40,6 +42,7 @@ pub use crate::time::DURATION_UNITS;
 pub use changes::{ChangeConsequence, ChangeLimit, ChangeObjection};
 pub use curves::{Curve, CurvesRegistration, RunCurves};
 pub use dashboard::{DashboardLine, DashboardPlot, DashboardState, DashboardView, Summary};
+pub use drawing::{DrawingRegistration, DrawnMessage, RunDrawing};
 pub use effects::ServiceEffects;
 pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use failures::{FailureNotice, Outage};

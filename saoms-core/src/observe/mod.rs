@@ -25,5 +25,5 @@ pub(crate) use observer::Observers;
 pub use observer::{Beginning, Interest, LostEvents, Observer, Records};
 pub(crate) use queue::{EventQueue, Notification};
 pub(crate) use records::{RecordDelivery, deliver_records};
-pub use rotation::{RotatingFile, Rotation, earlier_file};
+pub use rotation::{RotatingFile, Rotation, create_file, earlier_file};
 pub use sample::{FleetSample, SampleRate, StateOfTopic};

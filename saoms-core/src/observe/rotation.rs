@@ -66,7 +66,7 @@ impl RotatingFile {
         if rotation.is_any() && fs::metadata(&path).is_ok_and(|file| file.len() > 0) {
             move_aside(&path, rotation.keep)?;
         }
-        let file = open(&path, mode, OpenOptions::new().write(true).truncate(true))?;
+        let file = create_file(&path, mode)?;
         Ok(RotatingFile { path, mode, rotation, file, size: 0, since: Instant::now(), is_torn: false })
     }
 
@@ -131,6 +131,15 @@ impl RotatingFile {
         }
         Ok(())
     }
+}
+
+/// Opens a file from whose beginning is written. It has these permissions where it is new, whatever mask code of a
+/// library has set; without, those of the process.
+///
+/// # Errors
+/// It cannot be written.
+pub fn create_file(path: &Path, mode: Option<u32>) -> io::Result<File> {
+    open(path, mode, OpenOptions::new().write(true).truncate(true))
 }
 
 fn open(path: &Path, mode: Option<u32>, options: &mut OpenOptions) -> io::Result<File> {

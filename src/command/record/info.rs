@@ -72,6 +72,7 @@ pub(super) fn info(arguments: &InfoArguments) -> Result<(), Exit> {
                 "seed": value("seed").and_then(|seed| seed.parse::<u64>().ok()),
                 "clock": value("clock"),
                 "node": value("node"),
+                "part": value("part").and_then(|part| part.parse::<u32>().ok()),
                 "start_ns": reader.start(),
                 "duration_s": duration,
                 "topics": topics.iter().map(of_topic).collect::<Vec<Value>>(),
@@ -91,6 +92,9 @@ pub(super) fn info(arguments: &InfoArguments) -> Result<(), Exit> {
                     word("seed"),
                     word("version")
                 ));
+            }
+            if value("part").is_some() {
+                text.push_str(&format!(", part {}", word("part")));
             }
             text.push('\n');
             let mut table = Table::new(&["TOPIC", "TYPE", "MESSAGES", "FIRST", "LAST"]).with_numbers([2, 3, 4]);

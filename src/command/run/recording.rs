@@ -1,10 +1,12 @@
 //! The recording that a run leaves (`--record`).
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use clap::Args;
+use saoms_api::extension::DrawingRegistration;
 use saoms_api::host::one_line;
 use saoms_api::rule::nearest;
 use saoms_control::{AlertList, LossCounts};
@@ -15,6 +17,7 @@ use saoms_recording::{RecordedRun, Recording, RecordingEvents};
 use super::RunArguments;
 use super::control::fleet_name;
 use crate::Exit;
+use crate::arguments::parse_size;
 use crate::output::{counted, eprint, mode_of_files};
 
 /// Options of `saoms run` for the recording.
@@ -28,6 +31,20 @@ pub(crate) struct RecordingArguments {
     /// Record the messages of these topics alone
     #[arg(long = "record-topics", value_name = "TOPIC,...", requires = "record", value_delimiter = ',')]
     topics: Option<Vec<String>>,
+
+    /// End the file at this size, from 1MB on, and go on in another one: `FILE-2.mcap`, `FILE-3.mcap` and so on
+    #[arg(long = "record-limit", id = "record-limit", value_name = "SIZE", requires = "record", value_parser = limit)]
+    limit: Option<u64>,
+}
+
+/// The least size of a file: what stands before its messages has room.
+const LEAST: u64 = 1_000_000;
+
+fn limit(text: &str) -> Result<u64, String> {
+    match parse_size(text)? {
+        size if size < LEAST => Err("expected 1MB at least".to_owned()),
+        size => Ok(size),
+    }
 }
 
 /// Kind and subject of the alert about the file.
@@ -54,7 +71,8 @@ pub(super) fn of(
     let topics = arguments.recording.topics.clone();
     if let Some(wanted) = &topics {
         let known = Traffic::of(assembly).topics;
-        let names = || known.iter().map(|topic| topic.name.as_str());
+        let drawn = drawn(known.iter().map(|topic| topic.name.as_str()));
+        let names = || known.iter().map(|topic| topic.name.as_str()).chain(drawn.iter().map(String::as_str));
         let unknown: Vec<&String> = wanted.iter().filter(|topic| !names().any(|name| name == *topic)).collect();
         for topic in &unknown {
             let near = nearest(topic, names()).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
@@ -72,8 +90,21 @@ pub(super) fn of(
         node: arguments.node.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         topics,
+        limit: arguments.recording.limit,
     };
     Ok(Recording::new(path, mode_of_files(), run, Box::new(Told { alerts: Arc::clone(alerts) })))
+}
+
+/// The topics that drawings may have beside these, in each of their sites.
+fn drawn<'a>(topics: impl Iterator<Item = &'a str>) -> BTreeSet<String> {
+    let own = || DrawingRegistration::linked().into_iter().flat_map(|one| one.topics);
+    let in_site = |site: &str| own().map(|topic| format!("{site}/{topic}")).collect::<Vec<_>>();
+    topics
+        .flat_map(|topic| match topic.rsplit_once('/') {
+            Some((site, _)) => in_site(&format!("/{site}")),
+            None => in_site(""),
+        })
+        .collect()
 }
 
 /// True if the recording lacks something, which is told.

@@ -63,16 +63,20 @@ fn equal_runs_have_equal_recordings_which_info_and_filter_understand() {
             part(|topic| !topic.starts_with('/')),
             part(|topic| topic == "/saoms/journal"),
             part(|topic| topic == "/rosout"),
+            part(|topic| ["/scene", "/floor", "/map", "/tf"].contains(&topic)),
         ]
     };
-    let [messages, records, lines] = of("a.mcap");
+    let [messages, records, lines, drawn] = of("a.mcap");
     assert!(messages.iter().all(|one| one["component"].is_string()) && lines.len() > 3, "{}", lines.len());
     let journal = fs::read_to_string(folder.join("j.ndjson")).unwrap();
     assert_eq!(records.len(), journal.lines().filter(|line| line.contains("\"phase\":")).count());
     let report: Value = serde_json::from_str(&fs::read_to_string(folder.join("r.json")).unwrap()).unwrap();
     let written = (messages.len() + records.len() + lines.len()) as u64;
     assert_eq!(report["recorded"], serde_json::json!({"written": written, "lost": 0}));
-    assert_eq!(of("b.mcap"), [messages.clone(), records, lines]);
+    assert!(drawn.iter().all(|one| one["component"].is_null() && one["message"].is_object()) && drawn.len() > 10);
+    let count = drawn.iter().filter(|one| one["topic"] == "/tf").count();
+    assert!(count as f64 <= info(&folder, "a.mcap")["duration_s"].as_f64().unwrap() * 10.0 + 1.0, "{count}");
+    assert_eq!(of("b.mcap"), [messages.clone(), records, lines, drawn.clone()]);
 
     let about = info(&folder, "a.mcap");
     assert_eq!(
@@ -98,6 +102,9 @@ fn equal_runs_have_equal_recordings_which_info_and_filter_understand() {
     let only: Vec<Value> = messages.into_iter().filter(|one| one["topic"] == topic).collect();
     assert_eq!(cat(&folder, &["d.mcap", "--topic", topic]), only);
     assert_eq!(info(&folder, "d.mcap")["topics"].as_array().unwrap().len(), 3, "with journal and log");
+    recorded(&folder, "e.mcap", &["--record-topics", "/tf"]);
+    let only: Vec<Value> = drawn.into_iter().filter(|one| one["topic"] == "/tf").collect();
+    assert_eq!(cat(&folder, &["e.mcap", "--topic", "/tf"]), only);
 }
 
 #[test]
@@ -146,6 +153,9 @@ fn what_cannot_be_recorded_or_read_is_refused() {
     );
     wrong(&["run", &airport, "--virtual", "--record", "/dev/null"], "a recording has an index; give it a file");
     wrong(&["run", &airport, "--virtual", "--record", &airport], "airport.composite");
+    wrong(&["run", &airport, "--virtual", "--record", "x.mcap", "--record-limit", "1kB"], "expected 1MB at least");
+    let topics = ["--record", "x.mcap", "--record-topics", "/szene"];
+    wrong(&[&["run", &airport, "--virtual"][..], &topics].concat(), "no topic `/szene`; did you mean `/scene`?");
     let topics = ["--record", "x.mcap", "--record-topics", "ELMSTOPIK"];
     wrong(&[&["run", &airport, "--virtual"][..], &topics].concat(), "no topic `ELMSTOPIK`; did you mean `ELMSTOPIC`?");
     assert!(!folder.join("x.mcap").exists());

@@ -47,4 +47,38 @@ for topic, lines in ours.items():
         assert same(line["message"], message.ros_msg, topic), (line, message.ros_msg)
 told = sum(len(message.ros_msg.senders) for message in senders)
 assert told == sum(len(lines) for topic, lines in ours.items() if not topic.startswith("/"))
+
+# What Foxglove draws agrees with what the robots said until then.
+newest = {}
+said = [message for topic in ["POSTOPIC", "RLMSTOPIC"] for message in recorded[topic]]
+said.sort(key=lambda message: message.log_time_ns)
+for frames in recorded["/tf"]:
+    while said and said[0].log_time_ns <= frames.log_time_ns:
+        message = said.pop(0)
+        newest[message.channel.topic, message.ros_msg.robot] = message.ros_msg
+    shown = {}
+    for one in frames.ros_msg.transforms:
+        stamp = one.header.stamp
+        assert (one.header.frame_id, stamp.sec * 10**9 + stamp.nanosec) == ("map", frames.log_time_ns), one
+        shown[one.child_frame_id] = (one.transform.translation.x, one.transform.translation.y)
+    for (topic, robot), message in newest.items():
+        state = newest.get(("RLMSTOPIC", robot))
+        if topic == "POSTOPIC" and not (state and state.in_charge):
+            assert shown[f"robot{robot}"] == (message.block.x + 0.5, -message.block.y - 0.5), (message, shown)
+robots = {robot for _, robot in newest}
+scene = {}
+for update in recorded["/scene"]:
+    for entity in update.ros_msg.entities:
+        scene[entity.id] = entity
+    for deletion in update.ros_msg.deletions:
+        del scene[deletion.id]
+assert {f"robot{robot}" for robot in robots} <= scene.keys(), scene.keys()
+for robot in robots:
+    [text] = scene[f"robot{robot}"].texts
+    number, battery = text.text.split("\n")
+    assert (int(number), battery[-2:]) == (robot, " %"), text
+assert any(entity.id.startswith("luggage") for update in recorded["/scene"] for entity in update.ros_msg.entities)
+[grid] = recorded["/map"]
+assert len(grid.ros_msg.data) == grid.ros_msg.info.width * grid.ros_msg.info.height > 0
+assert recorded["/floor"][-1].ros_msg.entities
 print(sum(map(len, ours.values())))
