@@ -20,7 +20,7 @@ async function begin() {
   const connection = document.getElementById("connection");
   const answer = await fetch("run").catch(() => null);
   if (!answer?.ok) {
-    text(connection, "The run cannot be read: saoms view has ended.");
+    text(connection, "The run cannot be read: the program that shows it has ended.");
     connection.hidden = false;
     return;
   }

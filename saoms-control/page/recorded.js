@@ -132,7 +132,7 @@ export class RecordedFleet extends ShownFleet {
     const content = await answer?.json().catch(() => null);
     if (this.records.component !== component) return;
     if (answer?.ok) this.every = content;
-    else this.records.error = content?.error ?? "saoms view has ended: its records cannot be read any more.";
+    else this.records.error = content?.error ?? "The program that shows this has ended: its records cannot be read any more.";
     this.#records();
     this.dispatchEvent(new CustomEvent("change", { detail: "records" }));
   }

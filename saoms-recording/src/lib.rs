@@ -22,3 +22,4 @@ pub use excerpt::Excerpt;
 pub use reader::{Channel, Part, Reader, RecordedFile, RecordedMessage};
 pub use recording::{RecordedRun, Recording, RecordingEvents};
 pub use ros::RosType;
+pub use writing::REPORT;

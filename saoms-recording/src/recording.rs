@@ -339,7 +339,7 @@ impl Observer for Recording {
     fn end(&self, report: &RunReport) {
         let Some(mut writing) = lock(&self.writing).take() else { return };
         let time = self.at(Time::from_nanos((report.time_s * 1e9) as u64));
-        let report = serde_json::to_vec(&report.without_records()).unwrap_or_default();
+        let report = serde_json::to_vec(report).unwrap_or_default();
         writing.end(time, &report);
     }
 }

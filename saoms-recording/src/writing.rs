@@ -20,8 +20,8 @@ const EVERY: Duration = Duration::from_secs(1);
 /// Chunks of a file after which another one begins, since their index is in memory: of 18 hours at least.
 const MOST_CHUNKS: u64 = 1 << 16;
 
-/// The name of the attachment with the report.
-pub(crate) const REPORT: &str = "report.json";
+/// The name of the file in a recording that is the report of its run.
+pub const REPORT: &str = "report.json";
 /// What the metadata of a channel say of one that has drawings.
 const DRAWING: &str = "drawing";
 

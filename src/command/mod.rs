@@ -13,6 +13,7 @@ mod man;
 mod new;
 mod query;
 mod record;
+mod replay;
 mod report;
 mod run;
 mod schema;
@@ -62,6 +63,7 @@ enum Command {
     Query(query::QueryArguments),
     Record(record::RecordArguments),
     View(view::ViewArguments),
+    Replay(replay::ReplayArguments),
     Ps(control::PsArguments),
     Status(control::StatusArguments),
     Top(control::TopArguments),
@@ -106,6 +108,7 @@ pub(crate) fn execute() -> Exit {
         Command::Query(arguments) => query::query(&arguments),
         Command::Record(arguments) => record::record(&arguments),
         Command::View(arguments) => view::view(&arguments),
+        Command::Replay(arguments) => replay::replay(&arguments),
         Command::Ps(arguments) => control::ps(&arguments),
         Command::Status(arguments) => control::status(&arguments),
         Command::Top(arguments) => control::top(&arguments),

@@ -42,19 +42,23 @@ pub(crate) fn view(arguments: &ViewArguments) -> Exit {
     if let Err(exit) = Outputs::beside(read).with_streams() {
         return exit;
     }
-    let run = match finished(arguments) {
-        Ok(run) => run,
+    match finished(arguments) {
+        Ok(run) => serve(run, arguments.port),
         Err(problem) => {
             eprint(&format!("error: {problem}\n"));
-            return Exit::WrongInput;
+            Exit::WrongInput
         }
-    };
+    }
+}
+
+/// Serves the page of a run.
+pub(super) fn serve(run: FinishedRun, port: u16) -> Exit {
     let (name, time) = (one_line(run.name()).into_owned(), run.time());
-    let server = match ViewServer::start(run, arguments.port) {
+    let server = match ViewServer::start(run, port) {
         Ok(server) => server,
         Err(error) => {
-            let help = if arguments.port == 0 { "" } else { "  = help: name another port, or none\n" };
-            eprint(&format!("error: `--port {}`: {error}\n{help}", arguments.port));
+            let help = if port == 0 { "" } else { "  = help: name another port, or none\n" };
+            eprint(&format!("error: `--port {port}`: {error}\n{help}"));
             return Exit::WrongInput;
         }
     };

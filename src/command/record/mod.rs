@@ -67,13 +67,13 @@ pub(crate) fn record(arguments: &RecordArguments) -> Exit {
 }
 
 /// A recording. Why it cannot be read is reported.
-fn open(path: &Path) -> Result<Reader, Exit> {
+pub(super) fn open(path: &Path) -> Result<Reader, Exit> {
     Outputs::beside([path.to_owned()]).with_streams()?;
     Reader::open(path).map_err(|error| unreadable(&error))
 }
 
 /// Reports why a recording cannot be read.
-fn unreadable(error: &RecordingError) -> Exit {
+pub(super) fn unreadable(error: &RecordingError) -> Exit {
     eprint(&format!("error: {}\n", one_line(&error.to_string())));
     match error {
         RecordingError::Io { error, .. } if error.kind() != std::io::ErrorKind::NotFound => Exit::Failed,

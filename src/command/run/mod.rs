@@ -183,9 +183,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         && is_standard(&report)
         && [&picture, &timeline].into_iter().all(is_standard);
     let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some() || timeline.is_some());
-    let recorder = report.as_ref().filter(|_| !arguments.short_report);
+    let is_shown_later = report.is_some() && !arguments.short_report
+        || recording.is_some() && assembly.components.len() <= recording::REPLAYED;
     let figures = Arc::new(FigureWatch::new(control::is_reached(arguments)));
-    let recorder = recorder.map(|_| {
+    let recorder = is_shown_later.then(|| {
         let components = assembly.components.len();
         Arc::new(Recorder::new(title(arguments), components, Arc::clone(&alerts), Arc::clone(&figures)))
     });

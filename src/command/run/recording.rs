@@ -47,6 +47,10 @@ fn limit(text: &str) -> Result<u64, String> {
     }
 }
 
+/// The most components of a fleet whose recording has what `saoms replay` shows without a full report. Samples of 1,000
+/// components would take longer than all else that is recorded of them.
+pub(super) const REPLAYED: usize = 250;
+
 /// Kind and subject of the alert about the file.
 const ALERT: (&str, &str) = ("file", "recording");
 

@@ -17,6 +17,7 @@ mod network;
 mod orders;
 mod places;
 mod sites;
+mod replay;
 mod slow_clients;
 mod status;
 mod time;
