@@ -736,8 +736,8 @@ typedef struct SaomsTransportTable {
                         void **session,
                         struct SaomsSink error);
     // Looks at settings, as those of `open`, without joining a network: before anything starts. Puts a JSON text into
-    // `faults`, a list of what cannot be used: objects with `setting` (`url`, `user`, `users`, `access`, `ca`,
-    // `certificate` or `key`) and `text`, what is wrong and what to do. Nothing, or an empty list: all can.
+    // `faults`, a list of what cannot be used: objects with `setting` (`url`, `listen`, `user`, `users`, `access`,
+    // `ca`, `certificate` or `key`) and `text`, what is wrong and what to do. Nothing, or an empty list: all can.
     SaomsStatus (*judge)(struct SaomsBytes settings, struct SaomsSink faults);
     // Sends a message, with what the program says beside it, to all sessions of the network that subscribe to its
     // key, but not to this one. Must not wait for another program, nor for room: a millisecond is the most that it

@@ -3,12 +3,11 @@
 use std::fmt::{self, Write as _};
 use std::sync::{LazyLock, Mutex, Once, PoisonError, Weak};
 
-use saoms_abi::Status;
+use saoms_transport::{Failure, tls};
 use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Level, Metadata, Subscriber};
 
-use super::Failure;
 use super::session::Program;
 use super::settings::Settings;
 
@@ -56,7 +55,7 @@ pub(super) fn tell(endpoint: &str, program: Weak<Program>) {
 /// The failure of an attempt to connect, in words for people.
 pub(super) fn failure(settings: &Settings, cause: &str) -> Failure {
     let has = |text: &str| cause.contains(text);
-    let failed = |text: String| Failure { status: Status::FAILED, text };
+    let failed = |text: String| Failure::failed(text);
     let host = settings.address().rsplit_once(':').map_or(settings.address(), |(host, _)| host);
     if has("in response to an OpenSyn") || has("in response to an InitSyn") {
         return failed(match &settings.user {
@@ -81,24 +80,19 @@ pub(super) fn failure(settings: &Settings, cause: &str) -> Failure {
         );
     }
     if has("UnknownIssuer") || has("BadSignature") {
-        return failed("nobody in `tlsCa` vouches for the certificate of the broker".to_owned());
+        return failed(tls::UNKNOWN_ISSUER.to_owned());
     }
     if has("not valid for name") || has("NotValidForName") {
-        return failed(format!("the certificate of the broker is not for `{host}`: name it as the certificate does"));
+        return failed(tls::not_for(host));
     }
     if has("certificate expired") || has("not valid yet") {
-        return failed(
-            "the certificate of the broker is not valid at this time: renew it, or set the clock".to_owned(),
-        );
+        return failed(tls::NOT_VALID.to_owned());
     }
     if has("CertificateRequired") {
-        return failed("the broker asks for a certificate: give `tlsCertificate` and `tlsKey`".to_owned());
+        return failed(tls::ASKS.to_owned());
     }
     if ["UnknownCA", "BadCertificate", "CertificateUnknown", "DecryptError", "AccessDenied"].into_iter().any(has) {
-        return failed(
-            "the broker does not accept the certificate in `tlsCertificate`: its `tlsCa` does not vouch for it"
-                .to_owned(),
-        );
+        return failed(tls::NOT_ACCEPTED.to_owned());
     }
     if has("InvalidContentType") || has("corrupt message") {
         return failed(
@@ -113,7 +107,7 @@ pub(super) fn failure(settings: &Settings, cause: &str) -> Failure {
         () if cause.is_empty() => "it does not answer as a broker does: another program may have this port".to_owned(),
         () => cause.to_owned(),
     };
-    Failure { status: Status::UNREACHABLE, text }
+    Failure::unreachable(text)
 }
 
 struct Causes;

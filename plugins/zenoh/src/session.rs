@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 use std::thread;
 use std::time::Duration;
 
-use saoms_abi::{Bytes, Status, TransportEvents};
+use saoms_transport::{Bytes, Failure, Status, Transport, TransportEvents};
 use zenoh::Wait as _;
 use zenoh::key_expr::KeyExpr;
 use zenoh::pubsub::Subscriber;
@@ -15,7 +15,7 @@ use zenoh::sample::{Locality, Sample, SampleKind};
 
 use super::probe::probe;
 use super::settings::Settings;
-use super::{Failure, causes};
+use super::{causes, certificates};
 
 /// Longest time for the end of a session.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -108,8 +108,37 @@ struct Keys {
 }
 
 impl Session {
+    /// The declared form of a key, once the key is frequent.
+    fn declared(&self, key: &str) -> Result<Option<KeyExpr<'static>>, Failure> {
+        let keys = self.keys.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(declared) = keys.declared.get(key) {
+            return Ok(Some(declared.clone()));
+        }
+        let is_full = keys.declared.len() >= DECLARED;
+        drop(keys);
+        if is_full {
+            return Ok(None);
+        }
+        let mut keys = self.keys.write().unwrap_or_else(PoisonError::into_inner);
+        if keys.counts.len() >= COUNTED {
+            keys.counts.clear();
+        }
+        let count = keys.counts.entry(key.to_owned()).or_default();
+        *count += 1;
+        if *count < FREQUENT || keys.declared.contains_key(key) {
+            return Ok(None);
+        }
+        let declared = self.zenoh.declare_keyexpr(key.to_owned()).wait().map_err(Failure::failed)?;
+        keys.counts.remove(key);
+        keys.declared.insert(key.to_owned(), declared.clone());
+        Ok(Some(declared))
+    }
+}
+
+impl Transport for Session {
     /// Joins a network, or opens one.
-    pub(super) fn open(settings: Settings, events: TransportEvents) -> Result<Session, Failure> {
+    fn open(settings: &str, events: TransportEvents) -> Result<Session, Failure> {
+        let settings = Settings::read(settings)?;
         let endpoint = settings.endpoint();
         let is_client = !settings.listen && settings.of_peers().is_none();
         if is_client {
@@ -162,7 +191,12 @@ impl Session {
         Ok(Session { zenoh, program, subscribers: Mutex::default(), keys: RwLock::default() })
     }
 
-    pub(super) fn put(&self, key: &str, message: &[u8], attachment: &[u8], is_urgent: bool) -> Result<(), Failure> {
+    fn judge(settings: &str) -> Result<Vec<(&'static str, String)>, Failure> {
+        let settings = Settings::read(settings)?;
+        Ok(settings.unfit().into_iter().chain(certificates::judge(&settings)).collect())
+    }
+
+    fn put(&self, key: &str, message: &[u8], attachment: &[u8], is_urgent: bool) -> Result<(), Failure> {
         // What the network has no room for is dropped, and sent again by the program: to wait for one slow reader would
         // hold up all others.
         let priority = if is_urgent { Priority::InteractiveHigh } else { Priority::Data };
@@ -175,33 +209,7 @@ impl Session {
         put.wait().map_err(Failure::failed)
     }
 
-    /// The declared form of a key, once the key is frequent.
-    fn declared(&self, key: &str) -> Result<Option<KeyExpr<'static>>, Failure> {
-        let keys = self.keys.read().unwrap_or_else(PoisonError::into_inner);
-        if let Some(declared) = keys.declared.get(key) {
-            return Ok(Some(declared.clone()));
-        }
-        let is_full = keys.declared.len() >= DECLARED;
-        drop(keys);
-        if is_full {
-            return Ok(None);
-        }
-        let mut keys = self.keys.write().unwrap_or_else(PoisonError::into_inner);
-        if keys.counts.len() >= COUNTED {
-            keys.counts.clear();
-        }
-        let count = keys.counts.entry(key.to_owned()).or_default();
-        *count += 1;
-        if *count < FREQUENT || keys.declared.contains_key(key) {
-            return Ok(None);
-        }
-        let declared = self.zenoh.declare_keyexpr(key.to_owned()).wait().map_err(Failure::failed)?;
-        keys.counts.remove(key);
-        keys.declared.insert(key.to_owned(), declared.clone());
-        Ok(Some(declared))
-    }
-
-    pub(super) fn subscribe(&self, keys: &str, token: u64) -> Result<(), Failure> {
+    fn subscribe(&self, keys: &str, token: u64) -> Result<(), Failure> {
         let program = Arc::clone(&self.program);
         let subscriber = self.zenoh.declare_subscriber(keys.to_owned());
         // Within a program messages take no network.
@@ -212,12 +220,12 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn unsubscribe(&self, token: u64) -> Result<(), Failure> {
+    fn unsubscribe(&self, token: u64) -> Result<(), Failure> {
         let subscriber = self.subscribers.lock().unwrap_or_else(PoisonError::into_inner).remove(&token);
         subscriber.map_or(Ok(()), |subscriber| subscriber.undeclare().wait().map_err(Failure::failed))
     }
 
-    pub(super) fn close(self) {
+    fn close(self) {
         // From here on no function of the program is called: a call that runs is waited for.
         *self.program.events.write().unwrap_or_else(PoisonError::into_inner) = None;
         self.subscribers.into_inner().unwrap_or_else(PoisonError::into_inner).clear();

@@ -4,11 +4,11 @@ use std::fs::File;
 use std::io::Write as _;
 use std::os::fd::{AsRawFd as _, FromRawFd as _};
 
+use saoms_transport::Failure;
+use saoms_transport::tls::Files;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use zenoh::Config;
-
-use super::Failure;
 
 /// How long a client tries to reach its router before it says that it does not, in milliseconds.
 const PATIENCE: u64 = 900;
@@ -33,7 +33,7 @@ pub(super) struct Settings {
     #[serde(default)]
     access: Vec<Access>,
     #[serde(default)]
-    pub(super) tls: Tls,
+    pub(super) tls: Files,
 }
 
 /// A user that a router accepts.
@@ -51,14 +51,6 @@ struct Access {
     subscribe: Vec<String>,
 }
 
-/// Paths of files.
-#[derive(Default, Deserialize)]
-pub(super) struct Tls {
-    pub(super) ca: Option<String>,
-    pub(super) certificate: Option<String>,
-    pub(super) key: Option<String>,
-}
-
 /// A configuration, with what it names while a session is opened with it.
 pub(super) struct Prepared {
     pub(super) config: Config,
@@ -67,6 +59,10 @@ pub(super) struct Prepared {
 }
 
 impl Settings {
+    pub(super) fn read(text: &str) -> Result<Settings, Failure> {
+        serde_json::from_str(text).map_err(Failure::failed)
+    }
+
     /// The endpoint in the terms of Zenoh.
     pub(super) fn endpoint(&self) -> String {
         match self.url.split_once("://") {
@@ -177,7 +173,7 @@ impl Settings {
             set("access_control", self.access_control())?;
         }
         if self.is_tls() {
-            let Tls { ca, certificate, key } = &self.tls;
+            let Files { ca, certificate, key } = &self.tls;
             // A router asks for certificates, a client shows its own, and a peer does both.
             let is_mutual = if self.listen { ca.is_some() } else { certificate.is_some() };
             set("transport/link/tls/enable_mtls", json!(is_mutual))?;

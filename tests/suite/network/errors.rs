@@ -17,14 +17,14 @@ const SENDER: (&str, &str, &[(&str, &str)]) = ("Sender1", "numbers.Sender", &[("
 const TO_DO: &str = ": start it, or correct `url` (component `Sender1` needs it)";
 
 /// A program at a url that waits for no broker.
-fn impatient(programs: &Programs, name: &str, url: &str, time: &str) -> Arc<Program> {
+pub(super) fn impatient(programs: &Programs, name: &str, url: &str, time: &str) -> Arc<Program> {
     programs.start_with(name, &on_network(url, &[], &[SENDER]), |command| {
         command.args(["--connect-timeout", time]);
     })
 }
 
 #[track_caller]
-fn ends_with(programs: &Programs, program: &Program, texts: &[&str]) {
+pub(super) fn ends_with(programs: &Programs, program: &Program, texts: &[&str]) {
     programs.ends(program, 1);
     let printed = program.printed();
     assert!(texts.iter().all(|text| printed.contains(text)), "{texts:?}\n{printed}");

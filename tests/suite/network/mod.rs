@@ -3,6 +3,7 @@
 mod access;
 mod borders;
 mod broken;
+mod brokers;
 mod calls;
 mod certificates;
 mod errors;

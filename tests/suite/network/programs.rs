@@ -51,6 +51,30 @@ pub(super) struct Programs {
 pub(super) enum Transport {
     Relay,
     Zenoh,
+    /// At a broker of others.
+    Mqtt,
+    Stomp,
+}
+
+impl Transport {
+    /// What stands before host and port in its urls.
+    fn scheme(self) -> &'static str {
+        match self {
+            Transport::Relay => "relay://",
+            Transport::Zenoh => "",
+            Transport::Mqtt => "mqtt://",
+            Transport::Stomp => "stomp://",
+        }
+    }
+
+    fn library(self) -> PathBuf {
+        library(match self {
+            Transport::Relay => "saoms_relay",
+            Transport::Zenoh => "saoms_zenoh",
+            Transport::Mqtt => "saoms_mqtt",
+            Transport::Stomp => "saoms_stomp",
+        })
+    }
 }
 
 /// A program that was started.
@@ -110,10 +134,7 @@ impl Programs {
 
     /// The address of the network at this port.
     pub(super) fn url(&self, port: u16) -> String {
-        match self.transport {
-            Transport::Relay => format!("relay://127.0.0.1:{port}"),
-            Transport::Zenoh => format!("127.0.0.1:{port}"),
-        }
+        format!("{}127.0.0.1:{port}", self.transport.scheme())
     }
 
     /// Starts the broker.
@@ -191,8 +212,7 @@ impl Programs {
     ) -> Arc<Program> {
         let mut run = command(&[arguments, &["--grace", "10s"]].concat());
         run.current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
-        let transport = library(if self.transport == Transport::Relay { "saoms_relay" } else { "saoms_zenoh" });
-        for library in [transport, build::library("numbers")] {
+        for library in [self.transport.library(), build::library("numbers")] {
             run.arg("--plugin").arg(library);
         }
         configure(&mut run);

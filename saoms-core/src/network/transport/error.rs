@@ -3,6 +3,16 @@ use std::path::PathBuf;
 
 use crate::plugin::PluginError;
 
+/// The transports that ship: their packages, with the schemes for which people look for them. Where a scheme is none of
+/// these, the first one is what is likely meant.
+const SHIPPED: [(&str, [&str; 2]); 3] =
+    [("saoms-zenoh", ["", "tls"]), ("saoms-mqtt", ["mqtt", "mqtts"]), ("saoms-stomp", ["stomp", "stomp+ssl"])];
+
+/// A scheme as people write it.
+pub(super) fn shown(scheme: &str) -> String {
+    if scheme.is_empty() { "`host:port`".to_owned() } else { format!("`{scheme}://`") }
+}
+
 /// A reason why there is no transport for a url.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "each field is named in the message of its variant")]
@@ -28,10 +38,16 @@ impl fmt::Display for TransportError {
                 if !known.is_empty() {
                     write!(out, "; those that were found serve {}", known.join(", "))?;
                 }
+                let meant = SHIPPED.iter().find(|(_, serves)| serves.contains(&scheme.as_str()));
+                let (package, [one, other]) = meant.unwrap_or(&SHIPPED[0]);
                 let folders: Vec<String> = searched.iter().map(|path| format!("`{}`", path.display())).collect();
-                out.write_str(
-                    ": `cargo build --release -p saoms-zenoh` makes the one for `host:port` and `tls://`, \
-                     `libsaoms_zenoh.so`, in `target/release`",
+                write!(
+                    out,
+                    ": `cargo build --release -p {package}` makes the one for {} and {}, `lib{}.so`, in \
+                     `target/release`",
+                    shown(one),
+                    shown(other),
+                    package.replace('-', "_")
                 )?;
                 if let Some(installed) = installed {
                     write!(out, "; copy it to `{}`, or name it with `--plugin`", installed.display())?;

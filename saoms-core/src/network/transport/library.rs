@@ -6,6 +6,7 @@ use saoms_abi::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportTable};
 use serde::Deserialize;
 
 use super::TransportError;
+use super::error::shown;
 use crate::plugin::{PluginError, libraries, load_table, read_section};
 
 /// What the metadata of a transport say.
@@ -64,11 +65,7 @@ impl Transport {
             if info.schemes.iter().any(|one| one == scheme) {
                 return Transport::load(&path, &info);
             }
-            known.extend(
-                info.schemes
-                    .iter()
-                    .map(|one| if one.is_empty() { "`host:port`".to_owned() } else { format!("`{one}://`") }),
-            );
+            known.extend(info.schemes.iter().map(|one| shown(one)));
         }
         let (scheme, known) = (scheme.to_owned(), known.into_iter().collect());
         Err(TransportError::Missing { scheme, searched, known, installed: beside_the_program().pop() })

@@ -107,7 +107,7 @@ pub enum Opened {
 /// A setting that a transport cannot use.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct SettingFault {
-    /// Its member of the settings: `url`, `user`, `users`, `access`, `ca`, `certificate` or `key`.
+    /// Its member of the settings: `url`, `listen`, `user`, `users`, `access`, `ca`, `certificate` or `key`.
     pub setting: String,
     /// What is wrong with it, and what to do.
     pub text: String,

@@ -9,7 +9,9 @@ use crate::assembly::{TaskProperties, on_bus};
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
-use crate::check::tasks::broker_address::{fault, host_and_port, ip, is_in_clear, is_loopback, is_plain, peers};
+use crate::check::tasks::broker_address::{
+    encrypted, fault, host_and_port, ip, is_in_clear, is_loopback, is_plain, peers,
+};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::source::Location;
 
@@ -130,9 +132,9 @@ impl<'n, 'a> Networks<'n, 'a> {
             );
             let files = first("tlsCa", |task| task.tls_ca.is_some()).or(pair.0).or(pair.1);
             let is_told = tls_files(url, files, pair, report);
-            if is_told || is_loopback(url) || peers(url).is_some() || !is_plain(url) {
+            let Some(tls) = encrypted(url).filter(|_| !is_told && !is_loopback(url) && peers(url).is_none()) else {
                 continue;
-            }
+            };
             let at = self.at(*place, "url");
             let password = first("password", |task| task.password.is_some());
             let one = match password.or(first("passwordFile", |task| task.password_file.is_some())) {
@@ -148,11 +150,15 @@ impl<'n, 'a> Networks<'n, 'a> {
                     Diagnostic::new(&codes::UNPROTECTED_NETWORK, at, message)
                 }
             };
-            let tls = format!("tls://{url}");
-            report.push(one.help(format!(
-                "write {}, and give the broker `transport` tls and certificates: see docs/security.md",
-                quoted(&tls)
-            )));
+            let tls = quoted(&tls);
+            report.push(one.help(match is_plain(url) {
+                true => {
+                    format!("write {tls}, and give the broker `transport` tls and certificates: see docs/security.md")
+                }
+                false => {
+                    format!("write {tls} with `tlsCa`, and let the broker listen there with TLS: see docs/brokers.md")
+                }
+            }));
         }
     }
 
@@ -397,10 +403,7 @@ fn tls_files(
     let both = "give both: the key shows that the certificate is one's own";
     let (at, message, help) = match pair {
         _ if is_in_clear(url) => {
-            let named = match url.strip_prefix("peers://") {
-                Some(list) => format!("peers+tls://{list}"),
-                None => format!("tls://{url}"),
-            };
+            let named = encrypted(url).unwrap_or_default();
             (
                 first,
                 format!("the files for TLS are not used: {} is without TLS", quoted(url)),

@@ -21,6 +21,11 @@ pub(crate) struct AddressFault {
     pub(crate) instead: Option<String>,
 }
 
+/// The transports that do not encrypt, each with the one in its place that does. What a transport does that is not
+/// among these is known to its library alone.
+const IN_CLEAR: [(&str, &str); 4] =
+    [("", "tls://"), ("peers://", "peers+tls://"), ("mqtt://", "mqtts://"), ("stomp://", "stomp+ssl://")];
+
 /// How the addresses of networks without a broker begin: without TLS, and with it.
 const OF_PEERS: [&str; 2] = ["peers://", "peers+tls://"];
 
@@ -140,9 +145,16 @@ pub(crate) fn is_plain(text: &str) -> bool {
     !text.contains("://")
 }
 
+/// How a network is named with TLS whose address is without it; `None` for one that encrypts, as far as is known here.
+pub(crate) fn encrypted(text: &str) -> Option<String> {
+    let begin = text.find("://").map_or(0, |end| end + 3);
+    let (_, instead) = IN_CLEAR.iter().find(|(clear, _)| *clear == &text[..begin])?;
+    Some(format!("{instead}{}", &text[begin..]))
+}
+
 /// True if what goes to an address without fault is not encrypted, as far as is known here.
 pub(crate) fn is_in_clear(text: &str) -> bool {
-    is_plain(text) || text.starts_with(OF_PEERS[0])
+    encrypted(text).is_some()
 }
 
 /// The host and the port of an address without fault.

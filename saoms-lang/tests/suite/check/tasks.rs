@@ -155,6 +155,29 @@ fn lists_of_peers() {
 }
 
 #[test]
+fn brokers_of_others_beyond_the_machine_are_to_encrypt() {
+    let url = |text: &str, more: &str| robot(&format!(r#"<property name="url">{text}</property>{more}"#));
+    let password = r#"<property name="user">u</property><property name="password">$P</property>"#;
+    let ca = r#"<property name="tlsCa">ca.pem</property>"#;
+    let all = [
+        url("mqtt://localhost:1883", password),
+        url("mqtt://10.0.0.5:1883", ""),
+        url("stomp://10.0.0.5:61613", password),
+        url("mqtts://10.0.0.5:8883", &format!("{password}{ca}")),
+        url("stomp://localhost:61613", ca),
+    ];
+    expect![[r#"
+        3:22-42 warning S4029: messages to `mqtt://10.0.0.5:1883` go over the network without protection
+          help: write `mqtts://10.0.0.5:1883` with `tlsCa`, and let the broker listen there with TLS: see docs/brokers.md
+        3:22-44 error S4020: a password is for `stomp://10.0.0.5:61613`, which has no TLS: who is on the way can take the connection over
+          3:115-117 the password
+          help: write `stomp+ssl://10.0.0.5:61613` with `tlsCa`, and let the broker listen there with TLS: see docs/brokers.md
+        3:79-85 error S4025: the files for TLS are not used: `stomp://localhost:61613` is without TLS
+          help: name the network `stomp+ssl://localhost:61613`, or leave them out
+    "#]].assert_eq(&all.concat());
+}
+
+#[test]
 fn addresses_of_message_brokers() {
     let url = |text: &str| robot(&format!(r#"<property name="url">{text}</property>"#));
     for right in ["localhost:61616", "127.0.0.1:1", "[::1]:65535"] {

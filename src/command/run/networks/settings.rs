@@ -127,6 +127,7 @@ impl Resolver<'_> {
                 "certificate" => (tls(1), "tlsCertificate"),
                 "key" => (tls(2), "tlsKey"),
                 "user" => (router.or(described.user.as_ref().map(|(index, _)| *index)).unwrap_or(first), "user"),
+                "listen" => (first, if self.has(first, "transport") { "transport" } else { "IP" }),
                 "users" => (first, if self.has(first, "users") { "users" } else { "user" }),
                 _ if router.is_some() => (first, "IP"),
                 _ => (first, "url"),
