@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::Resettable;
 use clap::{Args, Command};
 use clap_mangen::Man;
 
@@ -25,7 +26,8 @@ pub(crate) struct ManArguments {
 
 pub(crate) fn man(arguments: &ManArguments, command: Command) -> Exit {
     let folder = &arguments.output;
-    let mut command = command.disable_help_subcommand(true);
+    // Pages do not depend on the build that writes them.
+    let mut command = command.disable_help_subcommand(true).long_version(Resettable::Reset);
     command.build();
     let mut pages = Vec::new();
     add(command, &mut pages);

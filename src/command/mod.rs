@@ -20,12 +20,13 @@ mod schema;
 mod signals;
 mod simulate;
 mod tips;
+mod version;
 mod view;
 mod why;
 
 use std::io::{self, Write};
 
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 use saoms_api::host::is_invisible;
 
@@ -43,7 +44,7 @@ The help of each command describes its own exit codes.";
 
 /// Deploys a fleet of self-adaptive robots from composite files.
 #[derive(Debug, Parser)]
-#[command(name = "saoms", version, after_help = EXIT_CODES)]
+#[command(name = "saoms", version, long_version = version::BUILD, after_help = EXIT_CODES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -181,8 +182,13 @@ fn parsed() -> Arguments {
             guard::ends_by_itself();
             error.exit();
         }
-        // Help and version.
-        printed(|_| error.print().and_then(|()| io::stdout().flush()));
+        // Help and version; `-V` is one line.
+        let is_long = error.kind() == ErrorKind::DisplayVersion && error.to_string().lines().count() > 1;
+        let libraries = if is_long { version::libraries() } else { String::new() };
+        printed(|output| {
+            error.print().and_then(|()| io::stdout().flush())?;
+            output.write_all(libraries.as_bytes())
+        });
         guard::exit(if has_failed() { Exit::Failed } else { Exit::Done } as i32)
     })
 }

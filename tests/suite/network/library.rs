@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::programs::{Program, Programs, Transport, component, on_network};
 use crate::boundary::build;
 use crate::plugins::library;
-use crate::support::PROGRAM;
+use crate::support::{PROGRAM, text};
 
 /// The command where no library is beside it, with a composite of these components.
 fn alone(programs: &Programs, name: &str, components: &str) -> Arc<Program> {
@@ -66,6 +66,12 @@ fn a_missing_library_is_told_with_how_to_get_it() {
     for text in ["error[S4031]", "there is no transport for urls such as `host:port`", &how, "--> tasks.composite:2:"] {
         assert!(printed.contains(text), "{text}\n{printed}");
     }
+    assert!(version(&programs).ends_with(" of the boundary, none was found\n"), "{}", version(&programs));
+}
+
+/// What the command says there of its build.
+fn version(programs: &Programs) -> String {
+    text(&Command::new(programs.folder().join("bin/saoms")).arg("--version").output().unwrap())
 }
 
 /// As packages have it: the command in `bin`, and the library in `lib/saoms`.
@@ -88,6 +94,7 @@ fn a_library_is_found_where_packages_have_it() {
         programs.ends(program, 0);
     }
     programs.end(&broker);
+    assert!(version(&programs).contains(" of the boundary, `host:port`, "), "{}", version(&programs));
 }
 
 #[test]

@@ -65,10 +65,17 @@ impl Transport {
             if info.schemes.iter().any(|one| one == scheme) {
                 return Transport::load(&path, &info);
             }
-            known.extend(info.schemes.iter().map(|one| shown(one)));
+            known.extend(info.shown_schemes());
         }
         let (scheme, known) = (scheme.to_owned(), known.into_iter().collect());
         Err(TransportError::Missing { scheme, searched, known, installed: beside_the_program().pop() })
+    }
+
+    /// The urls that the libraries beside the program serve, as messages show them. What cannot be used serves none.
+    pub fn served_beside_the_program() -> BTreeSet<String> {
+        let libraries = beside_the_program().into_iter().flat_map(|place| libraries_at(&place));
+        let infos = libraries.filter_map(|path| TransportInfo::read(&path).ok().flatten());
+        infos.flat_map(|info| info.shown_schemes()).collect()
     }
 
     fn load(path: &Path, info: &TransportInfo) -> Result<Transport, TransportError> {
@@ -88,6 +95,11 @@ impl Transport {
 }
 
 impl TransportInfo {
+    /// The urls that it serves, as messages show them.
+    fn shown_schemes(&self) -> Vec<String> {
+        self.schemes.iter().map(|scheme| shown(scheme))
+    }
+
     /// The metadata of a library; `None` where it is no transport.
     fn read(path: &Path) -> Result<Option<TransportInfo>, TransportError> {
         #[derive(Deserialize)]
