@@ -1,4 +1,4 @@
-//! A fleet as a service: what its manager is told, and the unit of `docs/service.md`.
+//! A fleet as a service: what its manager is told, and the units of packages.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -139,41 +139,56 @@ fn a_timer_that_hangs_gives_no_sign_of_life() {
     assert_eq!(manager.end(), Some(130));
 }
 
+/// The units that packages have, in the order of the page that shows them.
+const UNITS: [&str; 2] = ["saoms@.service", "saoms-postgres@.service"];
+
 #[test]
-fn systemd_finds_nothing_wrong_with_the_unit() {
+fn the_page_shows_the_units_that_packages_have() {
     let page = project("docs/service.md");
-    let unit = page.split("```ini\n").nth(1).unwrap().split("```").next().unwrap();
+    let shown: Vec<&str> = page.split("```ini\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    assert_eq!(shown, UNITS.map(|unit| project(&format!("packages/{unit}"))));
+}
+
+#[test]
+fn systemd_finds_nothing_wrong_with_the_units() {
+    let folder = tempfile::tempdir().unwrap();
+    for unit in UNITS {
+        // The fleet `hall`, by a program that there is.
+        let text_of_unit = project(&format!("packages/{unit}"));
+        let programs = ["/usr/bin/saoms-postgres", "/usr/bin/saoms"];
+        assert!(programs.iter().any(|program| text_of_unit.contains(program)), "{text_of_unit}");
+        let program = format!("ExecStart={PROGRAM} ");
+        let own =
+            programs.iter().fold(text_of_unit, |unit, path| unit.replace(&format!("ExecStart={path} "), &program));
+        let file = folder.path().join(unit.replace('@', "@hall"));
+        fs::write(&file, own).unwrap();
+        let mut verify = Command::new("systemd-analyze");
+        match verify.args(["verify", "--man=no"]).arg(&file).output() {
+            Ok(output) => assert!(output.status.success() && text(&output).is_empty(), "{}", text(&output)),
+            // A test cannot install it.
+            Err(error) => println!("skipped: systemd-analyze is missing: {error}"),
+        }
+    }
+}
+
+#[test]
+fn the_command_line_of_the_unit_is_one_that_there_is() {
+    let unit = project("packages/saoms@.service");
     for wanted in ["Type=notify", "SuccessExitStatus=130", "Restart=on-failure", "WatchdogSec="] {
         assert!(unit.lines().any(|line| line.starts_with(wanted)), "{wanted}");
     }
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("hall.service");
-    assert!(unit.contains("/usr/local/bin/saoms"));
-    fs::write(&file, unit.replace("/usr/local/bin/saoms", PROGRAM)).unwrap();
-    let mut verify = Command::new("systemd-analyze");
-    match verify.args(["verify", "--man=no"]).arg(&file).output() {
-        Ok(output) => assert!(output.status.success() && text(&output).is_empty(), "{}", text(&output)),
-        // A test cannot install it.
-        Err(error) => println!("skipped: systemd-analyze is missing: {error}"),
-    }
-    // What is added for alerts differs in the option alone.
-    let alerts = page.split("```ini\n").nth(2).unwrap().split("```").next().unwrap();
-    let started = |unit: &str| unit.lines().rfind(|line| line.starts_with("ExecStart=/")).unwrap().to_owned();
-    assert_eq!(started(alerts).replace(" --alerts", ""), started(unit));
+    let line = unit.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/bin/saoms ")).unwrap();
     // What it restarts goes on, and the service beside it reads what it writes.
-    let command_line = started(unit);
-    let words: Vec<&str> = command_line.split(' ').collect();
-    let value = |option: &str| words.iter().skip_while(|word| **word != option).nth(1).copied();
-    let history = page.split("```ini\n").nth(3).unwrap().split("```").next().unwrap();
-    let reads = started(history).split(' ').nth(1).unwrap().to_owned();
-    assert_eq!(value("--history"), Some(reads.as_str()));
-    assert_eq!(value("--state"), Some("/var/lib/saoms/hall"));
-    // The command line of the unit is one that there is.
-    let line = unit.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/saoms ")).unwrap();
-    let line = line.replace("/etc/saoms/hall.composite", "composites/hall.composite");
+    assert!(line.contains(" --state /var/lib/saoms/%i/"), "{line}");
+    let (_, history) = line.split_once(" --history ").unwrap();
+    let history = history.split(' ').next().unwrap();
+    assert!(project("packages/saoms-postgres@.service").contains(&format!("saoms-postgres {history} ")), "{history}");
+    let folder = tempfile::tempdir().unwrap();
     let here = |line: String, place: &str| line.replace(place, folder.path().to_str().unwrap());
-    let line = ["/run/saoms", "/var/lib/saoms", "/var/log/saoms"].into_iter().fold(line, here);
-    let words: Vec<&str> = line.split(' ').chain(["--for", "50ms"]).collect();
-    let output = command(&words).output().unwrap();
+    let line = line.replace("/etc/saoms/%i.composite", "composites/hall.composite");
+    let line = ["/run/saoms/%i", "/var/lib/saoms/%i", "/var/log/saoms/%i"].into_iter().fold(line, here);
+    // Options of a fleet come last.
+    let words: Vec<&str> = line.strip_suffix(" $SAOMS_OPTIONS").unwrap().split(' ').collect();
+    let output = command(&[&words[..], &["--for", "50ms"]].concat()).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
 }

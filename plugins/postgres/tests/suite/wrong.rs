@@ -111,12 +111,12 @@ fn a_host_that_does_not_exist_is_wrong_input() {
 
 /// The command line of the unit for systemd is one that there is.
 #[test]
-fn the_service_of_the_page_starts() {
-    let page = fs::read_to_string("../../docs/service.md").unwrap();
-    let line = page.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/saoms-postgres ")).unwrap();
+fn the_service_of_the_package_starts() {
+    let unit = fs::read_to_string("../../packages/saoms-postgres@.service").unwrap().replace("%i", "hall");
+    let line = unit.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/bin/saoms-postgres ")).unwrap();
     let mut command = copier();
-    command.args(line.split(' ')).env("HALL_DATABASE", "postgres:///fleet?host=/none");
+    command.args(line.split(' ')).env("SAOMS_DATABASE", "postgres:///fleet?host=/none");
     let (code, told) = outcome(&command.output().unwrap());
     assert_eq!(code, 2, "{told}");
-    assert!(told.contains("there is no history at `/var/lib/saoms/hall.db`"), "{told}");
+    assert!(told.contains("there is no history at `/var/lib/saoms/hall/history.db`"), "{told}");
 }

@@ -97,7 +97,7 @@ impl Transport {
 impl TransportInfo {
     /// The urls that it serves, as messages show them.
     fn shown_schemes(&self) -> Vec<String> {
-        self.schemes.iter().map(|scheme| shown(scheme))
+        self.schemes.iter().map(|scheme| shown(scheme)).collect()
     }
 
     /// The metadata of a library; `None` where it is no transport.
