@@ -1,6 +1,7 @@
 //! Foreign programs that ours has to agree with. A test finds or installs its peer, and is skipped with a word where
 //! that fails; `SAOMS_PEERS=required`, which `.ci/run` sets, makes it fail then.
 
+mod book;
 pub(crate) mod browser;
 mod messages;
 mod rosbags;

@@ -35,11 +35,14 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
     ),
 ];
 
-/// The sources in a folder and below it, but what is built of them.
+/// The sources in a folder and below it, but what is built of them, and links to others.
 pub(super) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        if path.is_symlink() {
+            continue;
+        }
         if path.is_dir() && !path.ends_with("target") {
             files.extend(rust_files(&path));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
