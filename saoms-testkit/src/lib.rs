@@ -106,3 +106,18 @@ struct Plugins;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/scheduling.md")]
 struct Scheduling;
+
+/// The example of `docs/from-ros2.md`, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/from-ros2.md")]
+struct FromRos2;
+
+/// The example of `docs/from-dora.md`, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/from-dora.md")]
+struct FromDora;
+
+/// The example of `docs/from-behaviortree.md`, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/from-behaviortree.md")]
+struct FromBehaviorTree;
