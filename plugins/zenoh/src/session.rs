@@ -20,8 +20,8 @@ use super::{causes, certificates};
 /// Longest time for the end of a session.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Messages with one key before the key is declared. Zenoh then sends its number and keeps the routes that belong to it;
-/// without that it looks them up for each message.
+/// Messages with one key before the key is declared. Zenoh then sends its number and keeps the routes that belong to
+/// it; without that it looks them up for each message.
 const FREQUENT: u32 = 16;
 
 /// Most keys that are declared by one session.

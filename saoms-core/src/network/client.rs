@@ -6,6 +6,7 @@ mod member;
 #[cfg(test)]
 mod tests;
 mod unsent;
+mod waits;
 
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};

@@ -22,7 +22,7 @@ mod metrics;
 mod names;
 mod networks;
 mod order;
-pub(crate) mod os;
+mod os;
 mod settings;
 mod shared;
 mod stop;

@@ -25,7 +25,7 @@ use super::FIRST_OF_TOPICS;
 use super::enter::{SETTLES, in_milliseconds};
 use super::link::Link;
 use super::unsent::UnsentQueue;
-use crate::schedule::os::sys;
+use super::waits::waits;
 use linger::End;
 pub(super) use linger::Linger;
 
@@ -218,13 +218,13 @@ impl<F: Fleet> Member<F> {
             return false;
         }
         let Some(waiting) = self.port.take_short() else { return false };
-        let waits = sys::waits();
+        let before = waits();
         self.hands_over_at = Some(begin + LONGEST_AT_ONCE);
         self.take(waiting);
         self.hands_over_at = None;
         let end = self.now();
         // A thread that had to leave the processor to another one takes long as well, and did not wait for the network.
-        if end - begin > LONGEST_AT_ONCE && sys::waits() > waits {
+        if end - begin > LONGEST_AT_ONCE && waits() > before {
             self.crowded_until = end + CROWDED;
         }
         if !self.has_time() || !self.unsent.is_empty() {

@@ -2,5 +2,5 @@
 
 pub(super) mod clock;
 pub(super) mod realtime;
-pub(crate) mod sys;
+pub(super) mod sys;
 pub(super) mod thread;

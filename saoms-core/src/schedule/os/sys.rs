@@ -78,16 +78,6 @@ impl Gate {
     }
 }
 
-/// Number of times that the calling thread has waited for something, and gave up the processor for that. That the system
-/// took it for another thread does not count.
-pub(crate) fn waits() -> i64 {
-    // SAFETY: all of the struct are numbers, for which zero is a value.
-    let mut usage: libc::rusage = unsafe { std::mem::zeroed() };
-    // SAFETY: `usage` is valid and writable for the length of the call, which keeps no pointer to it.
-    unsafe { libc::getrusage(libc::RUSAGE_THREAD, &raw mut usage) };
-    usage.ru_nvcsw
-}
-
 /// The kernel's number of the calling thread.
 pub(crate) fn thread_id() -> i32 {
     // SAFETY: gettid takes nothing and cannot fail.
