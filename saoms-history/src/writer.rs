@@ -207,7 +207,7 @@ impl Writer {
                  VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
             )?;
             for entry in entries {
-                let change = entry.change().is_some();
+                let change = entry.is_change();
                 let mut values = entry.values();
                 if change {
                     values.remove("entry");

@@ -70,7 +70,7 @@ impl Log {
 
 impl JournalRecord {
     pub(crate) fn new(time: u64, entry: &JournalEntry) -> JournalRecord {
-        let is_change = entry.change().is_some();
+        let is_change = entry.is_change();
         let mut values = entry.values();
         let name = entry.record_id().to_owned();
         let (record, changed) = if is_change {

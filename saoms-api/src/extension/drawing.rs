@@ -43,8 +43,8 @@ impl DrawnMessage {
 /// The registration of a [`RunDrawing`].
 #[derive(Clone, Copy, Debug)]
 pub struct DrawingRegistration {
-    /// The last parts of the names of its topics, as `scene`: without sites they are `/scene`, and `/North/scene` in the
-    /// site `North`.
+    /// The last parts of the names of its topics, as `scene`: without sites they are `/scene`, and `/North/scene` in
+    /// the site `North`.
     pub topics: &'static [&'static str],
     /// True if the messages of a topic are needed that its publishers declare so.
     pub wants: fn(&TopicDeclaration<'_>) -> bool,

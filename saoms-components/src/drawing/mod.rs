@@ -1,5 +1,5 @@
-//! The drawing of a fleet in its recording (`saoms run --record`): map, robots and luggage as messages that Foxglove and
-//! Lichtblick draw. `docs/recording.md` has the topics.
+//! The drawing of a fleet in its recording (`saoms run --record`): map, robots and luggage as messages that Foxglove
+//! and Lichtblick draw. `docs/recording.md` has the topics.
 //!
 //! A message of a topic shows all that its topic is about, so that who goes to any time sees all of it. The robots are
 //! drawn in frames of their own, which move: their entities change only where what is said of them does.

@@ -151,6 +151,11 @@ impl JournalEntry {
         }
     }
 
+    /// True if it is a change of an entry of the component's knowledge.
+    pub fn is_change(&self) -> bool {
+        self.change
+    }
+
     /// The change of an entry of the component's knowledge, if the record is one.
     pub fn change(&self) -> Option<Change> {
         let value = |name| self.value(name).unwrap_or_default();
