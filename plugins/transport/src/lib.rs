@@ -1,6 +1,6 @@
 //! What transports share.
 //!
-//! [`boundary`] is the boundary to the program, for a [`Transport`] in Rust. [`tls`] has the files for TLS and
+//! [`transport!`] puts a [`Transport`] in Rust behind the boundary to the program. [`tls`] has the files for TLS and
 //! [`connect`] the look at who listens somewhere, with the words for what goes wrong. [`Session`] joins a network at a
 //! broker of others, which speaks a [`Language`]: [MQTT](mqtt), [STOMP](stomp). Whatever is the same for all of them is
 //! done here: the threads, the room for messages, and that it connects again.
