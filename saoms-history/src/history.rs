@@ -9,7 +9,9 @@ use saoms_api::Failure;
 use saoms_api::extension::{HistoryRegistration, HistoryTable, RunHistory};
 use saoms_api::host::TopicDeclaration;
 use saoms_core::journal::ComponentName;
-use saoms_core::observe::{Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage};
+use saoms_core::observe::{
+    Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage, WriterEvents,
+};
 use saoms_core::report::RunReport;
 use saoms_core::schedule::{Handle, SharedText};
 
@@ -32,14 +34,6 @@ pub struct HistoryRun {
     pub version: String,
 }
 
-/// Who hears that a history cannot be written.
-pub trait HistoryEvents: Send + Sync {
-    /// From now on rows are lost.
-    fn fails(&self, text: &str);
-    /// Rows can be written again.
-    fn works(&self);
-}
-
 /// The observer that writes the history of a run, while it goes on.
 ///
 /// What cannot be written is counted, and the next rows are tried again: a full disk or another program that writes for
@@ -48,7 +42,7 @@ pub struct History {
     path: PathBuf,
     run: HistoryRun,
     keep: Option<Duration>,
-    events: Box<dyn HistoryEvents>,
+    events: Box<dyn WriterEvents>,
     lost: Arc<AtomicU64>,
     /// Locked for moments alone: a thread of the run asks which topics are wanted.
     sources: Mutex<Vec<Source>>,
@@ -88,7 +82,7 @@ impl History {
         path: &Path,
         run: HistoryRun,
         keep: Option<Duration>,
-        events: Box<dyn HistoryEvents>,
+        events: Box<dyn WriterEvents>,
     ) -> Result<History, HistoryError> {
         let sources = HistoryRegistration::linked().into_iter();
         let source =

@@ -14,6 +14,6 @@ mod tests;
 mod writer;
 
 pub use error::HistoryError;
-pub use history::{History, HistoryEvents, HistoryRun};
+pub use history::{History, HistoryRun};
 pub use questions::{Answer, Questions};
 pub use tables::{ColumnDoc, TableDoc, table_docs};

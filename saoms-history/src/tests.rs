@@ -8,20 +8,20 @@ use rusqlite::Connection;
 use saoms_api::extension::{HistoryColumn, HistoryKind, HistoryRow, HistoryTable, HistoryValue};
 use saoms_api::host::Registration;
 use saoms_api::{Class, Component, Context, Failure, Time, Work};
-use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent};
+use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent, WriterEvents};
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 
 use crate::retention::OF_EARLIER_RUNS;
 use crate::writer::{Writer, earlier, open};
-use crate::{History, HistoryError, HistoryEvents, HistoryRun, Questions};
+use crate::{History, HistoryError, HistoryRun, Questions};
 
 /// What was told, in order.
 #[derive(Clone, Default)]
 struct Told(Arc<Mutex<Vec<String>>>);
 
-impl HistoryEvents for Told {
+impl WriterEvents for Told {
     fn fails(&self, text: &str) {
         self.0.lock().unwrap().push(text.to_owned());
     }

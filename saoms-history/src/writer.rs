@@ -208,11 +208,9 @@ impl Writer {
             )?;
             for entry in entries {
                 let change = entry.is_change();
-                let mut values = entry.values();
-                if change {
-                    values.remove("entry");
-                }
-                let data = (!values.is_empty()).then(|| serde_json::Value::Object(values).to_string());
+                let values = entry.record_values();
+                let data = Some(values).filter(|values| !values.is_empty());
+                let data = data.and_then(|values| serde_json::to_string(&values).ok());
                 let number = |number: u64| i64::try_from(number).unwrap_or(i64::MAX);
                 let cause = Some(number(entry.cause().0)).filter(|cause| *cause != 0);
                 let name = entry.record_id();

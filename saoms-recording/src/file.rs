@@ -78,7 +78,7 @@ pub(crate) struct FileWriter {
     chunk: usize,
     chunks: u64,
     /// The number of messages of each channel, by its number.
-    counts: HashMap<u16, u32>,
+    counts: Vec<u32>,
     senders: u16,
 }
 
@@ -118,7 +118,7 @@ impl FileWriter {
             .calculate_data_section_crc(false);
         // Memory takes everything.
         let mcap = options.create(NoSeek::new(unwritten.clone())).ok();
-        FileWriter { mcap, unwritten, place: 0, chunk: 0, chunks: 0, counts: HashMap::new(), senders: 0 }
+        FileWriter { mcap, unwritten, place: 0, chunk: 0, chunks: 0, counts: Vec::new(), senders: 0 }
     }
 
     /// The number of a channel; 0 if there are too many.
@@ -165,10 +165,12 @@ impl FileWriter {
             self.end_chunk();
         }
         let Some(mcap) = self.mcap.as_mut().filter(|_| channel != 0) else { return false };
-        let sequence = self.counts.entry(channel).or_default();
-        *sequence = sequence.wrapping_add(1);
+        let place = usize::from(channel);
+        self.counts.resize(self.counts.len().max(place + 1), 0);
+        self.counts[place] = self.counts[place].wrapping_add(1);
+        let sequence = self.counts[place];
         // Recorded and sent: nobody knows when it was recorded, and that is of no use.
-        let header = MessageHeader { channel_id: channel, sequence: *sequence, log_time: time, publish_time: time };
+        let header = MessageHeader { channel_id: channel, sequence, log_time: time, publish_time: time };
         self.chunk += bytes.len() + RECORD;
         mcap.write_to_known_channel(&header, bytes).is_ok()
     }

@@ -20,6 +20,6 @@ mod writing;
 pub use error::RecordingError;
 pub use excerpt::Excerpt;
 pub use reader::{Channel, Part, Reader, RecordedFile, RecordedMessage};
-pub use recording::{RecordedRun, Recording, RecordingEvents};
+pub use recording::{RecordedRun, Recording};
 pub use ros::RosType;
 pub use writing::REPORT;

@@ -1,5 +1,7 @@
 //! Messages that a recording has beside those of topics.
 
+use std::fmt::Write;
+
 use saoms_api::builtin_interfaces::Time;
 use saoms_api::{Level, Message};
 use saoms_core::journal::JournalEntry;
@@ -25,7 +27,7 @@ pub(crate) struct Log {
 }
 
 /// A record of the journal.
-#[derive(Clone, Debug, Message)]
+#[derive(Clone, Debug, Default, Message)]
 #[message(name = "saoms_msgs/msg/JournalRecord")]
 pub(crate) struct JournalRecord {
     pub(crate) stamp: Time,
@@ -69,28 +71,28 @@ impl Log {
 }
 
 impl JournalRecord {
-    pub(crate) fn new(time: u64, entry: &JournalEntry) -> JournalRecord {
-        let is_change = entry.is_change();
-        let mut values = entry.values();
-        let name = entry.record_id().to_owned();
-        let (record, changed) = if is_change {
-            values.remove("entry");
-            (String::new(), name)
-        } else {
-            (name, String::new())
-        };
-        JournalRecord {
-            stamp: stamp(time),
-            id: entry.id().0,
-            cause: entry.cause().0,
-            component: entry.component().to_owned(),
-            loop_name: entry.loop_name().unwrap_or_default().to_owned(),
-            phase: entry.phase().name().to_owned(),
-            record,
-            entry: changed,
-            text: entry.text(),
-            data: serde_json::Value::Object(values).to_string(),
+    /// Becomes the record of an entry. The memory of its texts is reused, since most messages of a recording are records.
+    pub(crate) fn set(&mut self, time: u64, entry: &JournalEntry) {
+        fn copy(text: &str, to: &mut String) {
+            to.clear();
+            to.push_str(text);
         }
+        self.stamp = stamp(time);
+        (self.id, self.cause) = (entry.id().0, entry.cause().0);
+        copy(entry.component(), &mut self.component);
+        copy(entry.loop_name().unwrap_or_default(), &mut self.loop_name);
+        copy(entry.phase().name(), &mut self.phase);
+        let (record, changed) = if entry.is_change() { ("", entry.record_id()) } else { (entry.record_id(), "") };
+        copy(record, &mut self.record);
+        copy(changed, &mut self.entry);
+        self.text.clear();
+        // A `String` takes everything.
+        let _ = write!(self.text, "{}", entry.displayed_text());
+        let mut data = std::mem::take(&mut self.data).into_bytes();
+        data.clear();
+        // Neither memory nor numbers and texts by name are refused.
+        let _ = serde_json::to_writer(&mut data, &entry.record_values());
+        self.data = String::from_utf8(data).unwrap_or_default();
     }
 }
 

@@ -61,11 +61,10 @@ impl Queue {
         self.lock().batch.heard.push(Heard::Topic(topic));
     }
 
-    /// Adds a message, whose end is not known yet, and what drawings hear of it; false if there is no room.
-    pub(crate) fn put(&self, recorded: Option<(Item, &[u8])>, heard: Option<Heard>, waits: bool) -> bool {
-        let more = recorded.as_ref().map_or(0, |(_, bytes)| bytes.len());
+    /// Adds messages with their bytes, and what drawings hear of them; false if there is no room.
+    pub(crate) fn put(&self, items: &[Item], bytes: &[u8], heard: Option<Heard>, waits: bool) -> bool {
         let mut waiting = self.lock();
-        while waiting.batch.is_full_for(more) {
+        while waiting.batch.is_full_for(bytes.len()) {
             if !waits || waiting.closed {
                 return false;
             }
@@ -73,11 +72,9 @@ impl Queue {
             self.wake(&mut waiting);
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
-        if let Some((item, bytes)) = recorded {
-            waiting.batch.bytes.extend_from_slice(bytes);
-            let end = waiting.batch.bytes.len();
-            waiting.batch.items.push(Item { end, ..item });
-        }
+        let start = waiting.batch.bytes.len();
+        waiting.batch.bytes.extend_from_slice(bytes);
+        waiting.batch.items.extend(items.iter().map(|item| Item { end: start + item.end, ..item.clone() }));
         waiting.batch.heard.extend(heard);
         if waiting.batch.is_much() {
             self.wake(&mut waiting);
@@ -144,19 +141,19 @@ mod tests {
 
     use super::*;
 
-    fn item() -> Item {
-        Item { channel: 0, sender: None, time: 0, end: 0 }
+    fn put(queue: &Queue, bytes: &[u8], waits: bool) -> bool {
+        queue.put(&[Item { channel: 0, sender: None, time: 0, end: bytes.len() }], bytes, None, waits)
     }
 
     #[test]
     fn a_full_queue_refuses_or_waits() {
         let queue = Queue::new();
         let large = vec![7; MOST / 2 + 1];
-        assert!(queue.put(Some((item(), &large)), None, false));
-        assert!(!queue.put(Some((item(), &large)), None, false), "there is no room");
+        assert!(put(&queue, &large, false));
+        assert!(!put(&queue, &large, false), "there is no room");
         let now = Instant::now() + Duration::from_secs(60);
         thread::scope(|scope| {
-            let waits = scope.spawn(|| queue.put(Some((item(), &large)), None, true));
+            let waits = scope.spawn(|| put(&queue, &large, true));
             let batch = queue.take(now, Batch::default());
             assert_eq!((batch.items.len(), batch.is_last), (1, false));
             assert!(waits.join().unwrap());

@@ -10,7 +10,7 @@ use saoms_api::extension::DrawingRegistration;
 use saoms_api::host::{TopicDeclaration, cdr};
 use saoms_api::{Failure, Level, Message, Time};
 use saoms_core::observe::{
-    Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage, create_file,
+    Beginning, Interest, LostEvents, Observer, Occurrence, Records, RunEvent, SentMessage, WriterEvents, create_file,
 };
 use saoms_core::report::RunReport;
 use saoms_core::schedule::Handle;
@@ -29,6 +29,9 @@ const LOG_TOPIC: &str = "/rosout";
 const JOURNAL: u16 = 0;
 const LOG: u16 = 1;
 
+/// Records of the journal that are put into the queue at once.
+const AT_ONCE: usize = 256;
+
 /// What a recording says of a run beside what the run itself says.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordedRun {
@@ -46,14 +49,6 @@ pub struct RecordedRun {
     pub limit: Option<u64>,
 }
 
-/// Who hears that a recording loses something.
-pub trait RecordingEvents: Send + Sync {
-    /// From now on something is lost.
-    fn fails(&self, text: &str);
-    /// Everything is recorded again.
-    fn works(&self);
-}
-
 /// The observer that records a run: messages, journal and log.
 ///
 /// A thread of its own writes. What comes faster than it can write is counted and lost in real time; in virtual time
@@ -66,8 +61,9 @@ pub struct Recording {
     drawings: Vec<&'static DrawingRegistration>,
     shared: Arc<Shared>,
     topics: Mutex<Topics>,
-    /// The memory for the bytes of a message.
+    /// The memory for the bytes of a message, and for records.
     bytes: Mutex<Vec<u8>>,
+    piece: Mutex<Piece>,
     thread: Mutex<Option<JoinHandle<Writing>>>,
     /// What the thread has left.
     writing: Mutex<Option<Writing>>,
@@ -76,7 +72,7 @@ pub struct Recording {
 /// What the recording and its thread have in common.
 pub(crate) struct Shared {
     pub(crate) queue: Queue,
-    pub(crate) events: Box<dyn RecordingEvents>,
+    pub(crate) events: Box<dyn WriterEvents>,
     /// The number of messages, records and lines that are not in the file.
     pub(crate) lost: Arc<AtomicU64>,
     pub(crate) written: AtomicU64,
@@ -86,6 +82,16 @@ pub(crate) struct Shared {
     pub(crate) waits: AtomicBool,
     /// True if the last message found no room.
     is_full: AtomicBool,
+}
+
+/// The memory for records of the journal that come at once.
+#[derive(Default)]
+struct Piece {
+    record: JournalRecord,
+    /// Of one record, and of all.
+    encoded: Vec<u8>,
+    bytes: Vec<u8>,
+    items: Vec<Item>,
 }
 
 /// The topics of the run.
@@ -123,7 +129,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Recording {
     /// The recording that is written to a path when the run begins.
     /// The file has these permissions where it is new, whatever mask code of a library has set.
-    pub fn new(path: &Path, mode: Option<u32>, run: RecordedRun, events: Box<dyn RecordingEvents>) -> Recording {
+    pub fn new(path: &Path, mode: Option<u32>, run: RecordedRun, events: Box<dyn WriterEvents>) -> Recording {
         let shared = Shared {
             queue: Queue::new(),
             events,
@@ -136,8 +142,8 @@ impl Recording {
         let (shared, path) = (Arc::new(shared), path.to_owned());
         let mut drawings = DrawingRegistration::linked();
         drawings.retain(|one| one.topics.iter().any(|drawn| run.topics.as_ref().is_none_or(|all| names(all, drawn))));
-        let (topics, bytes, thread, writing) = Default::default();
-        Recording { path, mode, run, drawings, shared, topics, bytes, thread, writing }
+        let (topics, bytes, piece, thread, writing) = Default::default();
+        Recording { path, mode, run, drawings, shared, topics, bytes, piece, thread, writing }
     }
 
     /// The number of messages, records and lines that are not in the file.
@@ -158,14 +164,14 @@ impl Recording {
         self.shared.start.load(Ordering::Relaxed).saturating_add(time.as_nanos())
     }
 
-    fn put(&self, recorded: Option<(Item, &[u8])>, heard: Option<Heard>) {
+    fn put(&self, items: &[Item], bytes: &[u8], heard: Option<Heard>) {
         let Shared { queue, events, lost, waits, is_full, .. } = &*self.shared;
-        if queue.put(recorded, heard, waits.load(Ordering::Relaxed)) {
+        if queue.put(items, bytes, heard, waits.load(Ordering::Relaxed)) {
             if is_full.swap(false, Ordering::Relaxed) {
                 events.works();
             }
         } else {
-            lost.fetch_add(1, Ordering::Relaxed);
+            lost.fetch_add(items.len().max(1) as u64, Ordering::Relaxed);
             if !is_full.swap(true, Ordering::Relaxed) {
                 let path = self.path.display();
                 events.fails(&format!("messages come faster than they can be recorded to `{path}`, and are lost"));
@@ -175,7 +181,7 @@ impl Recording {
 
     /// Puts what is of no topic of the fleet.
     fn tell(&self, channel: u16, time: u64, bytes: &[u8]) {
-        self.put(Some((Item { channel, sender: None, time, end: 0 }, bytes)), None);
+        self.put(&[Item { channel, sender: None, time, end: bytes.len() }], bytes, None);
     }
 
     /// Where the messages of a topic go.
@@ -308,12 +314,13 @@ impl Observer for Recording {
         let Way { channel, heard, is_lost } = self.way(topic);
         self.shared.lost.fetch_add(u64::from(is_lost), Ordering::Relaxed);
         let mut bytes = lock(&self.bytes);
-        let recorded = channel.map(|channel| {
+        bytes.clear();
+        let item = channel.map(|channel| {
             message.encode_into(&mut bytes);
             let (sender, time) = (Some(Arc::clone(component)), self.at(message.header().sent));
-            (Item { channel, sender, time, end: 0 }, bytes.as_slice())
+            Item { channel, sender, time, end: bytes.len() }
         });
-        self.put(recorded, heard.map(|topic| Heard::Message(topic, message.clone())));
+        self.put(item.as_slice(), &bytes, heard.map(|topic| Heard::Message(topic, message.clone())));
     }
 
     fn lost(&self, lost: LostEvents) {
@@ -322,9 +329,19 @@ impl Observer for Recording {
 
     fn records(&self, records: &Records<'_>) -> Result<(), Failure> {
         self.shared.lost.fetch_add(records.lost, Ordering::Relaxed);
-        for entry in records.entries {
-            let time = self.at(entry.time());
-            self.tell(JOURNAL, time, &cdr::encode(&JournalRecord::new(time, entry)));
+        let mut piece = lock(&self.piece);
+        let Piece { record, encoded, bytes, items } = &mut *piece;
+        for entries in records.entries.chunks(AT_ONCE) {
+            bytes.clear();
+            items.clear();
+            for entry in entries {
+                let time = self.at(entry.time());
+                record.set(time, entry);
+                cdr::encode_into(record, encoded);
+                bytes.extend_from_slice(encoded);
+                items.push(Item { channel: JOURNAL, sender: None, time, end: bytes.len() });
+            }
+            self.put(items, bytes, None);
         }
         Ok(())
     }

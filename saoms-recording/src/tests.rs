@@ -9,11 +9,11 @@ use std::sync::{Arc, Mutex};
 use saoms_api::extension::{DrawingRegistration, DrawnMessage, RunDrawing};
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 use saoms_api::{Cause, Header, Level, Message, Time, Topic};
-use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent, SentMessage};
+use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent, SentMessage, WriterEvents};
 
 use crate::drawer::{Drawer, HeardTopic};
 use crate::file::{ChannelForm, FileWriter, Item};
-use crate::{Excerpt, Part, Reader, RecordedRun, Recording, RecordingEvents, RosType, drawer};
+use crate::{Excerpt, Part, Reader, RecordedRun, Recording, RosType, drawer};
 
 const LAMP: &str = r#"{"name":"Lamp","fields":[{"name":"on","type":"bool"},{"name":"mode","type":
     {"enumeration":"uint8","values":{"WARM":0,"COLD":1}}}]}"#;
@@ -176,10 +176,10 @@ fn types_have_the_form_that_ros_gives_the_same_bytes() {
 }
 
 /// What was told of failures.
-#[derive(Default)]
-struct Told(Mutex<Vec<String>>);
+#[derive(Clone, Default)]
+struct Told(Arc<Mutex<Vec<String>>>);
 
-impl RecordingEvents for Arc<Told> {
+impl WriterEvents for Told {
     fn fails(&self, text: &str) {
         self.0.lock().unwrap().push(text.to_owned());
     }
@@ -189,8 +189,8 @@ impl RecordingEvents for Arc<Told> {
 
 #[test]
 fn what_the_disk_does_not_take_is_counted_and_told_once() {
-    let told = Arc::new(Told::default());
-    let recording = Recording::new(Path::new("/dev/full"), None, RecordedRun::default(), Box::new(Arc::clone(&told)));
+    let told = Told::default();
+    let recording = Recording::new(Path::new("/dev/full"), None, RecordedRun::default(), Box::new(told.clone()));
     recording.begin(&Beginning { seed: 0, is_virtual: true, components: &[] }).unwrap();
     let event = |text: &str| {
         let what = Occurrence::Note { level: Level::Info, text: text.to_owned() };
@@ -233,7 +233,7 @@ fn sent<M: Message>(nanos: u64, message: M) -> SentMessage {
 fn a_topic_may_have_messages_of_another_type_after_a_change() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f");
-    let told = Box::new(Arc::new(Told::default()));
+    let told = Box::new(Told::default());
     // Permissions are those that are wanted, whatever the mask of the process is.
     let recording = Recording::new(&path, Some(0o666), RecordedRun::default(), told);
     recording.begin(&Beginning { seed: 0, is_virtual: true, components: &[] }).unwrap();
@@ -252,7 +252,7 @@ fn a_full_file_is_whole_and_the_next_one_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let (path, next) = (folder.path().join("run.mcap"), folder.path().join("run-2.mcap"));
     let run = RecordedRun { limit: Some(1), ..RecordedRun::default() };
-    let recording = Recording::new(&path, None, run, Box::new(Arc::new(Told::default())));
+    let recording = Recording::new(&path, None, run, Box::new(Told::default()));
     recording.begin(&Beginning { seed: 0, is_virtual: true, components: &[] }).unwrap();
     let event = |text: String| {
         let what = Occurrence::Note { level: Level::Info, text };

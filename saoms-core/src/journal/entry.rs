@@ -5,6 +5,8 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Record, Time};
 use serde_json::{Map, Value};
 
+use super::RecordValues;
+
 /// A record of the journal: what a component saw, decided or did.
 #[derive(Clone, Debug)]
 pub struct JournalEntry {
@@ -112,10 +114,17 @@ impl JournalEntry {
 
     /// The text with the values inserted.
     pub fn text(&self) -> String {
-        match &self.what {
-            Content::Noted(record) => record.to_string(),
-            Content::Read { text, .. } | Content::Outside { text, .. } => text.clone(),
-        }
+        self.what.to_string()
+    }
+
+    /// The text, to be written without a copy.
+    pub fn displayed_text(&self) -> impl fmt::Display {
+        &self.what
+    }
+
+    /// The values by name, to be written without a map.
+    pub fn record_values(&self) -> RecordValues<'_> {
+        RecordValues(self)
     }
 
     /// A value of the record by its name.
@@ -185,7 +194,14 @@ impl fmt::Display for JournalEntry {
         let JournalEntry { time, component, .. } = self;
         let (by, phase) = (self.loop_name().unwrap_or("-"), self.phase.name());
         write!(formatter, "{time} {component} {by} {phase}: ")?;
-        match &self.what {
+        self.what.fmt(formatter)
+    }
+}
+
+/// The text with the values inserted.
+impl fmt::Display for Content {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Content::Noted(record) => record.fmt(formatter),
             Content::Read { text, .. } | Content::Outside { text, .. } => formatter.write_str(text),
         }

@@ -28,9 +28,10 @@ struct Line<'a> {
     /// The entry of the knowledge that changed.
     #[serde(skip_serializing_if = "Option::is_none")]
     entry: Option<&'a str>,
-    text: Text<'a>,
-    #[serde(skip_serializing_if = "Map::is_empty")]
-    values: Map<String, Value>,
+    #[serde(serialize_with = "as_text")]
+    text: &'a Content,
+    #[serde(skip_serializing_if = "RecordValues::is_empty")]
+    values: RecordValues<'a>,
     #[serde(skip_serializing_if = "is_none")]
     cause: u64,
 }
@@ -40,23 +41,64 @@ fn is_none(cause: &u64) -> bool {
     *cause == 0
 }
 
-struct Text<'a>(&'a Content);
+fn as_text<S: Serializer>(text: &&Content, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(text)
+}
 
-impl Serialize for Text<'_> {
+/// The values of a record as a JSON object, sorted by name. A change has not the name of its entry among them, which is
+/// its id.
+pub struct RecordValues<'a>(pub(super) &'a JournalEntry);
+
+impl RecordValues<'_> {
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        match &self.0.what {
+            Content::Noted(record) => record.values().all(|(name, _)| self.leaves_out(name)),
+            Content::Read { values, .. } | Content::Outside { values, .. } => {
+                values.keys().all(|name| self.leaves_out(name))
+            }
+        }
+    }
+
+    fn leaves_out(&self, name: &str) -> bool {
+        self.0.change && name == "entry"
+    }
+}
+
+impl Serialize for RecordValues<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            Content::Noted(record) => serializer.collect_str(record),
-            Content::Read { text, .. } | Content::Outside { text, .. } => serializer.serialize_str(text),
+        match &self.0.what {
+            Content::Noted(record) => {
+                let mut values: Vec<_> = record.values().filter(|(name, _)| !self.leaves_out(name)).collect();
+                values.sort_unstable_by_key(|(name, _)| *name);
+                serializer.collect_map(values.into_iter().map(|(name, value)| (name, Json(value))))
+            }
+            Content::Read { values, .. } | Content::Outside { values, .. } => {
+                serializer.collect_map(values.iter().filter(|(name, _)| !self.leaves_out(name)))
+            }
+        }
+    }
+}
+
+/// A value of a record.
+struct Json(saoms_api::Value);
+
+impl Serialize for Json {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.0 {
+            saoms_api::Value::Nothing => serializer.serialize_unit(),
+            saoms_api::Value::Bool(value) => serializer.serialize_bool(*value),
+            saoms_api::Value::Integer(value) => serializer.serialize_i64(*value),
+            saoms_api::Value::Number(value) => serializer.serialize_f64(*value),
+            saoms_api::Value::Pair(x, y) => serializer.collect_seq([x, y]),
+            saoms_api::Value::Word(word) => serializer.serialize_str(word),
+            saoms_api::Value::Text(text) => serializer.serialize_str(text.as_str()),
         }
     }
 }
 
 impl Serialize for JournalEntry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut values = self.values();
-        if self.change {
-            values.remove("entry");
-        }
         let line = Line {
             id: self.id.0,
             time_s: self.time.as_secs_f64(),
@@ -65,8 +107,8 @@ impl Serialize for JournalEntry {
             phase: self.phase.name(),
             record: (!self.change).then(|| self.record_id()),
             entry: self.change.then(|| self.record_id()),
-            text: Text(&self.what),
-            values,
+            text: &self.what,
+            values: RecordValues(self),
             cause: self.cause.0,
         };
         line.serialize(serializer)

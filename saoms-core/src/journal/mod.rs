@@ -28,6 +28,7 @@ pub use entry::{Change, JournalEntry};
 pub use excerpt::LiveJournal;
 pub(crate) use excerpt::Pieces;
 pub use find::find;
+pub use json::RecordValues;
 pub(crate) use json::in_lines;
 pub use kept::{Journal, LoopCounts};
 pub use nodes::node_of;

@@ -22,7 +22,7 @@ pub use event::{Occurrence, RunEvent, RunProgress, SentMessage};
 pub use invariants::InvariantWatch;
 pub use journal_file::JournalFile;
 pub(crate) use observer::Observers;
-pub use observer::{Beginning, Interest, LostEvents, Observer, Records};
+pub use observer::{Beginning, Interest, LostEvents, Observer, Records, WriterEvents};
 pub(crate) use queue::{EventQueue, Notification};
 pub(crate) use records::{RecordDelivery, deliver_records};
 pub use rotation::{RotatingFile, Rotation, create_file, earlier_file};

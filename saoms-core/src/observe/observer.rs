@@ -11,6 +11,14 @@ use crate::journal::{ComponentName, JournalEntry};
 use crate::report::RunReport;
 use crate::status::ComponentStatus;
 
+/// Who hears that an observer cannot write what it is to write to its file.
+pub trait WriterEvents: Send + Sync {
+    /// From now on something is lost, for this reason.
+    fn fails(&self, reason: &str);
+    /// Everything can be written again.
+    fn works(&self);
+}
+
 /// A program that sees what happens in a fleet.
 ///
 /// Events, messages and progress come from one thread of their own, in the order in which they happened, so that an

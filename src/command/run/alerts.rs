@@ -1,5 +1,5 @@
 //! Delivery of alerts to the address and the command that the composite names: only where the command line allows it,
-//! since a composite may be somebody else's.
+//! since a composite may be somebody else's. And the alert about files that cannot be written.
 
 use std::env;
 use std::sync::Arc;
@@ -8,6 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{AlertList, AlertTarget, Token};
+use saoms_core::observe::WriterEvents;
 use saoms_core::schedule::Handle;
 use saoms_lang::assembly::RunPolicy;
 
@@ -106,4 +107,30 @@ fn token(name: &str) -> Result<Token, Exit> {
 fn wrong(what: &str, help: &str) -> Exit {
     eprint(&format!("error: {what}\n  = help: {help}\n\n1 error: nothing was started\n"));
     Exit::WrongInput
+}
+
+/// The alert of the kind `file` about what a run leaves on the disk, from the first failure until it is written again.
+pub(super) struct FileAlert {
+    /// What the file is.
+    subject: &'static str,
+    alerts: Arc<AlertList>,
+}
+
+impl FileAlert {
+    const KIND: &str = "file";
+
+    pub(super) fn of(subject: &'static str, alerts: &Arc<AlertList>) -> FileAlert {
+        FileAlert { subject, alerts: Arc::clone(alerts) }
+    }
+}
+
+impl WriterEvents for FileAlert {
+    fn fails(&self, reason: &str) {
+        eprint(&format!("error: {reason}\n"));
+        self.alerts.raise(FileAlert::KIND, self.subject, reason.to_owned());
+    }
+
+    fn works(&self) {
+        self.alerts.over(FileAlert::KIND, self.subject);
+    }
 }

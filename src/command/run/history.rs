@@ -7,9 +7,10 @@ use std::time::Duration;
 
 use clap::Args;
 use saoms_control::{AlertList, LossCounts};
-use saoms_history::{History, HistoryEvents, HistoryRun};
+use saoms_history::{History, HistoryRun};
 
 use super::RunArguments;
+use super::alerts::FileAlert;
 use super::control::fleet_name;
 use crate::Exit;
 use crate::arguments::duration;
@@ -29,9 +30,6 @@ pub(crate) struct HistoryArguments {
     pub(super) keep: Option<Duration>,
 }
 
-/// Kind and subject of the alert about the file.
-const ALERT: (&str, &str) = ("file", "history");
-
 /// Where the history is written, for those who ask it from another folder.
 pub(super) fn path(arguments: &RunArguments) -> Option<PathBuf> {
     arguments.history.file.as_ref().map(|path| path::absolute(path).unwrap_or_else(|_| path.clone()))
@@ -45,8 +43,8 @@ pub(super) fn open(path: &Path, arguments: &RunArguments, alerts: &Arc<AlertList
         node: arguments.node.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
     };
-    let told = Told { alerts: Arc::clone(alerts) };
-    History::open(path, run, arguments.history.keep, Box::new(told)).map_err(|error| {
+    let events = FileAlert::of("history", alerts);
+    History::open(path, run, arguments.history.keep, Box::new(events)).map_err(|error| {
         eprint(&format!("error: `--history`: {error}\n\n1 error: nothing was started\n"));
         Exit::WrongInput
     })
@@ -60,20 +58,4 @@ pub(super) fn lacks_rows(losses: &LossCounts) -> bool {
         eprint(&format!("error: the history lacks {rows}, which could not be written\n"));
     }
     lost > 0
-}
-
-/// Tells people of a history that cannot be written.
-struct Told {
-    alerts: Arc<AlertList>,
-}
-
-impl HistoryEvents for Told {
-    fn fails(&self, text: &str) {
-        eprint(&format!("error: {text}\n"));
-        self.alerts.raise(ALERT.0, ALERT.1, text.to_owned());
-    }
-
-    fn works(&self) {
-        self.alerts.over(ALERT.0, ALERT.1);
-    }
 }

@@ -12,9 +12,10 @@ use saoms_api::rule::nearest;
 use saoms_control::{AlertList, LossCounts};
 use saoms_lang::assembly::{Assembly, Traffic};
 use saoms_lang::source::{Sources, Span};
-use saoms_recording::{RecordedRun, Recording, RecordingEvents};
+use saoms_recording::{RecordedRun, Recording};
 
 use super::RunArguments;
+use super::alerts::FileAlert;
 use super::control::fleet_name;
 use crate::Exit;
 use crate::arguments::parse_size;
@@ -50,9 +51,6 @@ fn limit(text: &str) -> Result<u64, String> {
 /// The most components of a fleet whose recording has what `saoms replay` shows without a full report. Samples of 1,000
 /// components would take longer than all else that is recorded of them.
 pub(super) const REPLAYED: usize = 250;
-
-/// Kind and subject of the alert about the file.
-const ALERT: (&str, &str) = ("file", "recording");
 
 /// The names and texts of what says what the fleet is, without secrets.
 pub(super) fn texts(sources: &Sources) -> Vec<(String, String)> {
@@ -96,7 +94,7 @@ pub(super) fn of(
         topics,
         limit: arguments.recording.limit,
     };
-    Ok(Recording::new(path, mode_of_files(), run, Box::new(Told { alerts: Arc::clone(alerts) })))
+    Ok(Recording::new(path, mode_of_files(), run, Box::new(FileAlert::of("recording", alerts))))
 }
 
 /// The topics that drawings may have beside these, in each of their sites.
@@ -119,20 +117,4 @@ pub(super) fn lacks_messages(losses: &LossCounts) -> bool {
         eprint(&format!("error: the recording lacks {lost}, records of the journal and lines of the log included\n"));
     }
     lost > 0
-}
-
-/// Tells people of a recording that loses something.
-struct Told {
-    alerts: Arc<AlertList>,
-}
-
-impl RecordingEvents for Told {
-    fn fails(&self, text: &str) {
-        eprint(&format!("warning: {text}\n"));
-        self.alerts.raise(ALERT.0, ALERT.1, text.to_owned());
-    }
-
-    fn works(&self) {
-        self.alerts.over(ALERT.0, ALERT.1);
-    }
 }

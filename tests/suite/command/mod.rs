@@ -29,4 +29,5 @@ mod simulate;
 mod state;
 mod trust;
 mod usage;
+mod version;
 mod why;

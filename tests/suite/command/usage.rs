@@ -70,19 +70,6 @@ fn an_option_or_a_command_in_another_form_is_told_the_right_one() {
 }
 
 #[test]
-fn the_version_says_which_build_it_is() {
-    let short = format!("saoms {}\n", env!("CARGO_PKG_VERSION"));
-    assert_eq!(stdout(&saoms(&["-V"])), short);
-    let long = stdout(&saoms(&["--version"]));
-    let rest = long.strip_prefix(&short).unwrap();
-    let starts = ["commit: ", "target: ", "plugins: version ", "transports: version "];
-    let lines: Vec<&str> = rest.lines().collect();
-    let fits = lines.iter().zip(starts).all(|(line, start)| line.len() > start.len() && line.starts_with(start));
-    assert!(fits && lines.len() == starts.len(), "{long}");
-    assert!(lines[1].contains(std::env::consts::ARCH), "{long}");
-}
-
-#[test]
 fn what_happens_stands_in_one_column_however_long_the_names() {
     let shown = stdout(&saoms(&["run", "composites/airport.composite", "--virtual"]));
     // When, who, what: where what begins.

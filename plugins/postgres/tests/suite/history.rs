@@ -8,7 +8,8 @@ use std::time::Duration;
 use postgres::Client;
 use rusqlite::Connection;
 use rusqlite::types::ValueRef;
-use saoms_history::{History, HistoryEvents, HistoryRun};
+use saoms_core::observe::WriterEvents;
+use saoms_history::{History, HistoryRun};
 use saoms_testkit::Fleet;
 use serde_json::Value;
 
@@ -17,7 +18,7 @@ use crate::server::Server;
 /// Who hears of a history that cannot be written.
 struct Nobody;
 
-impl HistoryEvents for Nobody {
+impl WriterEvents for Nobody {
     fn fails(&self, _: &str) {}
     fn works(&self) {}
 }
