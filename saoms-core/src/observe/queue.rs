@@ -8,7 +8,7 @@ use super::{FleetSample, Interest, LostEvents, Observers, Occurrence, RunEvent, 
 
 /// Maximum number of events that wait for the observers.
 const CAPACITY: usize = 65_536;
-/// Number of waiting events at which the reader takes them at once.
+/// Number of waiting events at which the reader takes them at once; so it does with few long lines or samples.
 const HURRY: usize = CAPACITY / 4;
 /// Time between two batches, in which events gather: a writer wakes the reader once for a batch, and not for each of many
 /// thousand events a second. Nobody sees that it is not less.
@@ -100,9 +100,9 @@ struct Waiting {
 }
 
 impl Waiting {
-    /// True if there is room for more, and more may come.
-    fn gathers(&self) -> bool {
-        self.notifications.len() < HURRY && !self.writers_sleep && !self.closed
+    /// True if the reader takes them at once, so that there is room for what comes.
+    fn is_much(&self) -> bool {
+        self.notifications.len() >= HURRY || self.bytes >= MOST_BYTES / 4 || self.samples >= MOST_SAMPLES
     }
 
     /// True if there is no room for one more. Samples have room of their own, and that of the end has it always.
@@ -187,10 +187,11 @@ impl EventQueue {
             self.filled.notify_one();
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
+        let was_much = waiting.is_much();
         waiting.bytes += notification.size();
         waiting.samples += usize::from(matches!(notification, Notification::Sample(_)));
         waiting.notifications.push_back(notification);
-        if std::mem::take(&mut waiting.reader_sleeps) || waiting.notifications.len() == HURRY {
+        if std::mem::take(&mut waiting.reader_sleeps) || !was_much && waiting.is_much() {
             self.filled.notify_one();
         }
     }
@@ -258,7 +259,7 @@ impl EventQueue {
             };
         }
         waiting.reader_sleeps = false;
-        while waiting.gathers() {
+        while !waiting.is_much() && !waiting.writers_sleep && !waiting.closed {
             let left = gathered.saturating_duration_since(Instant::now());
             if left == Duration::ZERO {
                 break;
