@@ -7,9 +7,8 @@ use saoms_api::extension::{DrawingRegistration, DrawnMessage, RunDrawing};
 use saoms_api::host::contain::contained;
 use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 
-/// The least time between two pictures, and after one of any size.
+/// The least time between two pictures.
 const EVERY: u64 = 100_000_000;
-const LONGEST: u64 = 1_000_000_000;
 /// Nanoseconds after each byte of a picture: those of large fleets come less often, 2 MB in a second.
 const OF_BYTE: u64 = 500;
 
@@ -104,7 +103,7 @@ impl Drawer {
         let mut drawn = Vec::new();
         each(&mut self.drawings, |one| drawn.extend(one.drawing.draw(Time::from_nanos(at))));
         let bytes: u64 = drawn.iter().map(|one| one.bytes.len() as u64).sum();
-        (self.due, self.next) = (None, at.saturating_add(bytes.saturating_mul(OF_BYTE).clamp(EVERY, LONGEST)));
+        (self.due, self.next) = (None, at.saturating_add(bytes.saturating_mul(OF_BYTE).max(EVERY)));
         drawn
     }
 

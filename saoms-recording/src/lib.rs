@@ -22,4 +22,4 @@ pub use excerpt::Excerpt;
 pub use reader::{Channel, Part, Reader, RecordedFile, RecordedMessage};
 pub use recording::{RecordedRun, Recording};
 pub use ros::RosType;
-pub use writing::REPORT;
+pub use writing::{REPORT, path_of_part};

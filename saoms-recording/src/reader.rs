@@ -15,6 +15,7 @@ use serde_json::Value;
 use crate::RecordingError;
 use crate::file::{ChannelForm, END, ROLE, RUN, SCHEMA, SENDERS};
 use crate::messages::Senders;
+use crate::writing::DRAWING;
 
 /// No record and no chunk is larger: what says so is damaged.
 const LARGEST: usize = 1 << 28;
@@ -92,6 +93,11 @@ impl Channel {
     /// The type of its messages, as ROS 2 calls it.
     pub fn type_name(&self) -> &str {
         &self.form.schema.0
+    }
+
+    /// True if its messages are drawings for tools, each of which shows all that its topic is about.
+    pub fn is_drawing(&self) -> bool {
+        self.form.metadata.get(ROLE).is_some_and(|role| role == DRAWING)
     }
 
     /// True if it tells something of the others.

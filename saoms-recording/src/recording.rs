@@ -82,6 +82,17 @@ pub(crate) struct Shared {
     pub(crate) waits: AtomicBool,
     /// True if the last message found no room.
     is_full: AtomicBool,
+    /// True if the file took not all that was written.
+    pub(crate) is_stuck: AtomicBool,
+}
+
+impl Shared {
+    /// Tells that everything is recorded again, if it is.
+    pub(crate) fn tell_that_it_works(&self) {
+        if !self.is_full.load(Ordering::Relaxed) && !self.is_stuck.load(Ordering::Relaxed) {
+            self.events.works();
+        }
+    }
 }
 
 /// The memory for records of the journal that come at once.
@@ -138,6 +149,7 @@ impl Recording {
             start: AtomicU64::new(0),
             waits: AtomicBool::new(false),
             is_full: AtomicBool::new(false),
+            is_stuck: AtomicBool::new(false),
         };
         let (shared, path) = (Arc::new(shared), path.to_owned());
         let mut drawings = DrawingRegistration::linked();
@@ -168,7 +180,7 @@ impl Recording {
         let Shared { queue, events, lost, waits, is_full, .. } = &*self.shared;
         if queue.put(items, bytes, heard, waits.load(Ordering::Relaxed)) {
             if is_full.swap(false, Ordering::Relaxed) {
-                events.works();
+                self.shared.tell_that_it_works();
             }
         } else {
             lost.fetch_add(items.len().max(1) as u64, Ordering::Relaxed);

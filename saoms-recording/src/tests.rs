@@ -207,7 +207,8 @@ fn what_the_disk_does_not_take_is_counted_and_told_once() {
     drop(recording);
     assert!(lost.load(Ordering::Relaxed) >= 7 + 5, "{lost:?}");
     let told = told.0.lock().unwrap();
-    assert!(told.len() == 1 && told[0].contains("cannot be written to `/dev/full`"), "{told:?}");
+    assert!(told.len() == 2 && told[0].contains("cannot be written to `/dev/full`"), "{told:?}");
+    assert!(told[1].contains("`/dev/full` has no end"), "{told:?}");
 }
 
 /// A lamp, before and after a change of the fleet.

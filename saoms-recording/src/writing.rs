@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -17,13 +17,14 @@ use crate::recording::Shared;
 
 /// What a killed program loses at most.
 const EVERY: Duration = Duration::from_secs(1);
-/// Chunks of a file after which another one begins, since their index is in memory: of 18 hours at least.
+/// Chunks of a file after which another one begins, since their index is in memory: 18 hours, or 64 GB of
+/// messages.
 const MOST_CHUNKS: u64 = 1 << 16;
 
 /// The name of the file in a recording that is the report of its run.
 pub const REPORT: &str = "report.json";
 /// What the metadata of a channel say of one that has drawings.
-const DRAWING: &str = "drawing";
+pub(crate) const DRAWING: &str = "drawing";
 
 /// What stands before all messages.
 pub(crate) struct Head {
@@ -45,8 +46,8 @@ pub(crate) struct Writing {
     file: File,
     writer: FileWriter,
     head: Head,
-    /// True once the file has that.
-    has_head: bool,
+    /// The size of the file with that, once it has it.
+    head_size: Option<u64>,
     shared: Arc<Shared>,
     /// The channels of the run, and their numbers in the file, 0 where there is none.
     forms: Vec<ChannelForm>,
@@ -57,8 +58,6 @@ pub(crate) struct Writing {
     drawn: HashMap<String, u16>,
     /// What was lost before this file.
     lost: u64,
-    /// True if the file took not all that was written.
-    is_stuck: bool,
     /// True once the file has its end, until there is the next one.
     is_over: bool,
 }
@@ -68,19 +67,23 @@ impl Place {
         Place { path, mode, limit: limit.unwrap_or(u64::MAX), part: 1 }
     }
 
-    /// The path of a part.
     fn part(&self, part: u32) -> PathBuf {
-        if part == 1 {
-            return self.path.clone();
-        }
-        let mut name = self.path.file_stem().unwrap_or_default().to_owned();
-        name.push(format!("-{part}"));
-        if let Some(ending) = self.path.extension() {
-            name.push(".");
-            name.push(ending);
-        }
-        self.path.with_file_name(name)
+        path_of_part(&self.path, part)
     }
+}
+
+/// The path of a part of a recording, from 1 on: after `run.mcap` comes `run-2.mcap`.
+pub fn path_of_part(recording: &Path, part: u32) -> PathBuf {
+    if part <= 1 {
+        return recording.to_owned();
+    }
+    let mut name = recording.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{part}"));
+    if let Some(ending) = recording.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    recording.with_file_name(name)
 }
 
 impl Writing {
@@ -91,23 +94,8 @@ impl Writing {
         shared: Arc<Shared>,
     ) -> Writing {
         let (writer, forms, channels, drawn) = (FileWriter::begin(), Vec::new(), Vec::new(), HashMap::new());
-        let (has_head, is_stuck, is_over, lost) = (false, false, false, 0);
-        Writing {
-            place,
-            file,
-            writer,
-            head,
-            has_head,
-            shared,
-            forms,
-            channels,
-            drawer,
-            chosen,
-            drawn,
-            lost,
-            is_stuck,
-            is_over,
-        }
+        let (head_size, is_over, lost) = (None, false, 0);
+        Writing { place, file, writer, head, head_size, shared, forms, channels, drawer, chosen, drawn, lost, is_over }
     }
 
     /// Writes what comes until nothing follows.
@@ -161,7 +149,7 @@ impl Writing {
 
     /// True if nothing is written now.
     fn loses(&self) -> bool {
-        self.is_stuck || self.is_over
+        self.shared.is_stuck.load(Ordering::Relaxed) || self.is_over
     }
 
     /// Draws what waits for messages that do not come. In virtual time they come.
@@ -207,7 +195,7 @@ impl Writing {
 
     /// Writes what stands before all messages. The start of the run is known with the first one.
     fn begin_file(&mut self) {
-        if std::mem::replace(&mut self.has_head, true) {
+        if self.head_size.is_some() {
             return;
         }
         let Head { values, files } = &self.head;
@@ -222,28 +210,29 @@ impl Writing {
             let media_type = if is_xml { "application/xml" } else { "text/plain" };
             self.writer.attach(name, media_type, start, text.as_bytes());
         }
+        self.head_size = Some(self.writer.size());
     }
 
     /// Brings to the file what has no place there yet, and begins another file where this one is full.
     fn bring(&mut self) {
-        let is_full = self.writer.size() >= self.place.limit || self.writer.chunks() >= MOST_CHUNKS;
+        let of_messages = self.writer.size().saturating_sub(self.head_size.unwrap_or_default());
+        let is_full = of_messages >= self.place.limit || self.writer.chunks() >= MOST_CHUNKS;
         if is_full && !self.loses() && self.writer.is_open() {
             self.end_part();
         }
         let brought = self.writer.bring(&mut self.file);
         match brought.and_then(|()| if self.is_over { self.next_part() } else { Ok(()) }) {
             Ok(()) => {
-                if std::mem::take(&mut self.is_stuck) {
+                if self.shared.is_stuck.swap(false, Ordering::Relaxed) {
                     // What was not drawn meanwhile is not known to those who read.
                     self.drawer.begin_again();
-                    self.shared.events.works();
+                    self.shared.tell_that_it_works();
                 }
             }
             Err(error) => {
-                if !self.is_stuck {
+                if !self.shared.is_stuck.swap(true, Ordering::Relaxed) {
                     self.fails(&error);
                 }
-                self.is_stuck = true;
             }
         }
     }
@@ -264,7 +253,7 @@ impl Writing {
     fn next_part(&mut self) -> io::Result<()> {
         let part = self.place.part + 1;
         self.file = create_file(&self.place.part(part), self.place.mode)?;
-        (self.place.part, self.writer, self.has_head, self.is_over) = (part, FileWriter::begin(), false, false);
+        (self.place.part, self.writer, self.head_size, self.is_over) = (part, FileWriter::begin(), None, false);
         self.begin_file();
         self.channels = self.forms.iter().map(|form| self.writer.channel(form)).collect();
         self.drawn.clear();
@@ -295,8 +284,14 @@ impl Writing {
         self.is_over = false;
         self.writer.finish();
         self.bring();
-        // How much is missing nobody knows.
-        self.shared.lost.fetch_add(u64::from(self.is_stuck), Ordering::Relaxed);
+        if self.shared.is_stuck.load(Ordering::Relaxed) {
+            let path = self.place.part(self.place.part).display().to_string();
+            self.shared
+                .events
+                .fails(&format!("the recording `{path}` has no end: no report, no index, and maybe not all messages"));
+            // How much is missing nobody knows.
+            self.shared.lost.fetch_add(1, Ordering::Relaxed);
+        }
     }
 }
 

@@ -94,6 +94,7 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
         }
         if is_program() {
             hardware::stop();
+            hardware::let_show();
         }
         libc::sigaction(signal, &raw const action, ptr::null_mut());
         // A fault of the code happens again when it goes on; what was sent has to be sent again.

@@ -48,6 +48,7 @@ pub(super) fn end_after(did: &str, by: &str, why: &str) -> ! {
         },
     }
     hardware::stop();
+    hardware::let_show();
     leave(Exit::Failed as c_int)
 }
 

@@ -53,6 +53,15 @@ pub(crate) fn still_moves(name: &str) -> String {
     format!("error: the hardware of component `{name}` may still move: its stop function has not returned{library}\n")
 }
 
+/// Time for what was logged before the end of the process to be shown: it gathers for 10 ms at most.
+const SHOWING: i32 = 20;
+
+/// Lets other threads show what was logged before. A signal handler may ask.
+pub(super) fn let_show() {
+    // SAFETY: no descriptors are given; `poll` is safe in a signal handler.
+    unsafe { libc::poll(ptr::null_mut(), 0, SHOWING) };
+}
+
 /// Stops all hardware and waits for that, but not much longer than the patience. A signal handler may ask.
 pub(super) fn stop() {
     if !WAITS.load(Ordering::SeqCst) {

@@ -24,8 +24,8 @@ pub(super) fn cat(arguments: &CatArguments) -> Result<(), Exit> {
     let (mut start, mut left, mut unread) = (Start::default(), arguments.limit.unwrap_or(u64::MAX), 0_u64);
     while left > 0 && !has_failed() {
         let Some(found) = reader.next_part().map_err(|error| unreadable(&error))? else {
-            part.check_topics(&reader)?;
             warn_of_cut(&part.file, &reader);
+            part.check_topics(&reader)?;
             break;
         };
         let Part::Message(message) = found else { continue };

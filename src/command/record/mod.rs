@@ -105,10 +105,18 @@ impl Start {
 impl PartArguments {
     /// True if a message is meant that has this time of the run.
     fn mean(&self, message: &RecordedMessage, seconds: f64) -> bool {
-        let topic = message.channel.topic();
-        (self.topics.is_empty() || self.topics.iter().any(|one| one == topic))
+        self.means_topic(message)
             && self.from.is_none_or(|from| seconds >= from.as_secs_f64())
             && self.to.is_none_or(|to| seconds <= to.as_secs_f64())
+    }
+
+    /// True if a message is of a topic that is meant, and from before the time that is.
+    fn begin_after(&self, message: &RecordedMessage, seconds: f64) -> bool {
+        self.means_topic(message) && self.from.is_some_and(|from| seconds < from.as_secs_f64())
+    }
+
+    fn means_topic(&self, message: &RecordedMessage) -> bool {
+        self.topics.is_empty() || self.topics.iter().any(|one| one == message.channel.topic())
     }
 
     /// Reports topics that a recording, all of which was read, does not have.

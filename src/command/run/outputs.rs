@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use saoms_core::observe::{JournalFile, RotatingFile, Rotation, earlier_file};
+use saoms_recording::path_of_part;
 
 use super::RunArguments;
 use super::log_file::LogFile;
@@ -51,6 +52,7 @@ impl RunFiles {
         let rotation = arguments.log.rotation();
         let moved = [&journal, &log].into_iter().flatten().filter(|_| rotation.is_any());
         problems.extend(moved.filter_map(|(asked, place)| taken_aside(asked, place, rotation, &outputs)));
+        problems.extend(recording.iter().filter_map(|(asked, place)| taken_by_part(asked, place, &outputs)));
         let pictures = [("--paths", &arguments.paths), ("--timeline", &arguments.timeline)];
         problems.extend(pictures.into_iter().filter_map(|(option, path)| other_picture(option, path.as_deref()?)));
         if problems.is_empty() {
@@ -87,6 +89,20 @@ fn taken_aside(asked: &Asked<'_>, place: &Place, rotation: Rotation, outputs: &O
     let (path, taken) = (displayed(path), displayed(&taken));
     Some(format!(
         "error: `{option} {path}`: the {what} would be rotated onto `{taken}`, which is an input or another output\n"
+    ))
+}
+
+/// The parts of a recording that are looked at.
+const PARTS: u32 = 1000;
+
+/// The message about a recording that would go on over a file that is read, or over another output.
+fn taken_by_part(asked: &Asked<'_>, place: &Place, outputs: &Outputs) -> Option<String> {
+    let Place::File(path) = place else { return None };
+    let taken = (2..=PARTS).map(|part| path_of_part(path, part)).find(|file| outputs.hold(file))?;
+    let Asked { what, option, path, .. } = asked;
+    let (path, taken) = (displayed(path), displayed(&taken));
+    Some(format!(
+        "error: `{option} {path}`: the {what} would go on in `{taken}`, which is an input or another output\n"
     ))
 }
 

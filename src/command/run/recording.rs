@@ -114,7 +114,9 @@ pub(super) fn lacks_messages(losses: &LossCounts) -> bool {
     let lost = losses.recorded.load(Ordering::Relaxed);
     if lost > 0 {
         let lost = counted(usize::try_from(lost).unwrap_or(usize::MAX), "message");
-        eprint(&format!("error: the recording lacks {lost}, records of the journal and lines of the log included\n"));
+        eprint(&format!(
+            "error: the recording lacks {lost} at least, records of the journal and lines of the log included\n"
+        ));
     }
     lost > 0
 }

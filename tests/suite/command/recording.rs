@@ -98,6 +98,11 @@ fn equal_runs_have_equal_recordings_which_info_and_filter_understand() {
     assert!(!part.is_empty());
     assert_eq!(part, cat(&folder, &[&["a.mcap"][..], &chosen].concat()));
     assert_eq!(info(&folder, "c.mcap")["files"], about["files"]);
+    // Tools draw a part from its first moment on.
+    let output =
+        saoms_in(&folder, &["record", "filter", "a.mcap", "-o", "late.mcap", "--topic", "/map", "--from", "3s"]);
+    assert_eq!(code(&output), 0, "{}", text(&output));
+    assert_eq!(cat(&folder, &["late.mcap"]), cat(&folder, &["a.mcap", "--topic", "/map"]));
     recorded(&folder, "d.mcap", &["--record-topics", topic]);
     let only: Vec<Value> = messages.into_iter().filter(|one| one["topic"] == topic).collect();
     assert_eq!(cat(&folder, &["d.mcap", "--topic", topic]), only);
@@ -154,6 +159,9 @@ fn what_cannot_be_recorded_or_read_is_refused() {
     wrong(&["run", &airport, "--virtual", "--record", "/dev/null"], "a recording has an index; give it a file");
     wrong(&["run", &airport, "--virtual", "--record", &airport], "airport.composite");
     wrong(&["run", &airport, "--virtual", "--record", "x.mcap", "--record-limit", "1kB"], "expected 1MB at least");
+    let over = ["--record", "x.mcap", "--journal", "x-2.mcap"];
+    let told = "the recording would go on in `x-2.mcap`, which is an input or another output";
+    wrong(&[&["run", &airport, "--virtual"][..], &over].concat(), told);
     let topics = ["--record", "x.mcap", "--record-topics", "/szene"];
     wrong(&[&["run", &airport, "--virtual"][..], &topics].concat(), "no topic `/szene`; did you mean `/scene`?");
     let topics = ["--record", "x.mcap", "--record-topics", "ELMSTOPIK"];
