@@ -656,6 +656,37 @@ typedef struct SaomsRuleTable {
                          struct SaomsSink error);
 } SaomsRuleTable;
 
+// The functions of a library that runs classes in the code of another language, which composites name by module and
+// class: `implementation.python`. Its metadata list these languages as `"implementations": ["python"]`.
+//
+// A request is JSON: `{"kind": "python", "module": "counter", "class": "Counter", "folders": ["/site"]}`. The module
+// is looked for in these folders first.
+typedef struct SaomsImplementationTable {
+    // The size of this table in bytes.
+    size_t size;
+    // Reads what the code of a class declares, and runs nothing of it. The answer is JSON:
+    //
+    // ```json
+    // {"declaration": {}, "file": "/site/counter.py", "installed": false,
+    //  "findings": [{"part": "class", "message": "...", "help": ["..."], "instead": ["..."]}]}
+    // ```
+    //
+    // The `declaration` is null where there are findings; the `part` of a finding is the attribute of the composite,
+    // `module` or `class`, for which the texts in `instead` are probably meant. `installed`, where the module was
+    // found in none of the folders, but where its language finds modules.
+    SaomsStatus (*declare)(struct SaomsBytes request, struct SaomsSink answer, struct SaomsSink error);
+    // As `construct` of a class. It runs none of the code that the request names: that begins when the component is
+    // initialized.
+    SaomsStatus (*construct)(struct SaomsBytes request,
+                             const struct SaomsPropertyView *values,
+                             size_t value_count,
+                             void **made,
+                             struct SaomsFindingSink findings,
+                             struct SaomsSink error);
+    // The functions of all its components.
+    const struct SaomsComponentTable *component;
+} SaomsImplementationTable;
+
 // The tables of what a library offers, each list in the order of its metadata.
 typedef struct SaomsPluginTable {
     // The size of this table in bytes.
@@ -676,6 +707,8 @@ typedef struct SaomsPluginTable {
     const struct SaomsRuleTable *const *rules;
     // Their number.
     size_t rule_count;
+    // The functions for classes in other languages. Null, or beyond the `size` of the table: there are none.
+    const struct SaomsImplementationTable *implementations;
 } SaomsPluginTable;
 
 // The function by which a library gives its table: it takes the version of the program's boundary.

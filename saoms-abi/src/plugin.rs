@@ -1,4 +1,6 @@
-use crate::{Bytes, ClassTable, LoopClassTable, RuleTable, VERSION};
+use core::ptr;
+
+use crate::{Bytes, ClassTable, ImplementationTable, LoopClassTable, RuleTable, VERSION};
 
 /// The section of a library that holds its metadata: one JSON text, which is read before anything in the library
 /// runs.
@@ -14,6 +16,7 @@ use crate::{Bytes, ClassTable, LoopClassTable, RuleTable, VERSION};
 /// | `classes` | the declarations of its classes, as `saoms-api/src/host/declaration` describes them |
 /// | `loops` | those of its loops |
 /// | `rules` | its rules over whole fleets |
+/// | `implementations` | the languages whose classes it runs, such as `python`: see [`ImplementationTable`] |
 ///
 /// A rule:
 ///
@@ -48,6 +51,8 @@ pub struct PluginTable {
     pub rules: *const *const RuleTable,
     /// Their number.
     pub rule_count: usize,
+    /// The functions for classes in other languages. Null, or beyond the `size` of the table: there are none.
+    pub implementations: *const ImplementationTable,
 }
 
 // SAFETY: what the pointers lead to is constant.
@@ -71,6 +76,12 @@ impl PluginTable {
             loop_count: loops.len(),
             rules: rules.as_ptr().cast(),
             rule_count: rules.len(),
+            implementations: ptr::null(),
         }
+    }
+
+    /// The same with functions for classes in other languages.
+    pub const fn with_implementations(self, implementations: &'static ImplementationTable) -> PluginTable {
+        PluginTable { implementations, ..self }
     }
 }

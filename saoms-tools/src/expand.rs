@@ -200,7 +200,11 @@ fn component(component: &ComponentSpec, name: &str, parts: impl IntoIterator<Ite
 
 /// The attributes that name the class of a component.
 fn implementation(component: &ComponentSpec) -> NewElement {
-    let node = NewElement::new("implementation.rust").with("class", component.class.name());
+    let name = component.class.name();
+    if let Some((module, class)) = component.class.language().and_then(|_| name.rsplit_once('.')) {
+        return NewElement::new("implementation.python").with("module", module).with("class", class);
+    }
+    let node = NewElement::new("implementation.rust").with("class", name);
     node.maybe("library", component.library.as_deref())
 }
 

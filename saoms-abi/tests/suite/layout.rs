@@ -74,7 +74,8 @@ fn layout() -> String {
         LoopTable { size, effect, entries, initialize, monitor, adapt, shutdown, destroy }
         LoopInstance { instance, table }
         ClassTable { size, construct, component }
-        PluginTable { size, version, metadata, classes, class_count, loops, loop_count, rules, rule_count }
+        ImplementationTable { size, declare, construct, component }
+        PluginTable { size, version, metadata, classes, class_count, loops, loop_count, rules, rule_count, implementations }
         RegionView { least, most }
         DepartedView { key, sender }
         StopView { size, state, stop, heartbeat, release }

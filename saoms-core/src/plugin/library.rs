@@ -1,17 +1,18 @@
 //! The code of a library.
 
 use std::ffi::{CStr, OsStr, OsString, c_int, c_void};
-use std::mem::MaybeUninit;
+use std::mem::{MaybeUninit, offset_of};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use std::{error, fmt, fs, slice};
+use std::{error, fmt, fs, ptr, slice};
 
 use libloading::os::unix::{Library, Symbol};
 use saoms_abi::{PluginTable, VERSION};
 use saoms_api::host::present::{self, Function, Owner, enter, looked_after};
 
+use super::boundary::Implementation;
 use super::copy::{FLAGS, PrivateCopy};
 use super::tables::{all, whole};
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
@@ -49,15 +50,18 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let unloadable =
         |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
     let (name, table) = load_table::<PluginTable>(path, &metadata.package, &metadata.entry, VERSION)?;
-    // SAFETY: by the same rules the table is null or constant; what a table of this version begins with is there.
+    // SAFETY: by the same rules the table is null or constant; what a table of this version begins with is there, and
+    // what may be missing is not looked at before its size.
     let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it returns no table".to_owned()))?;
     let disagrees =
         |message: String| unloadable(format!("its code and its metadata are not from the same build: {message}"));
     if table.version != VERSION {
         return Err(disagrees(format!("its code has version {} of the boundary, expected {VERSION}", table.version)));
     }
-    if table.size < size_of::<PluginTable>() {
-        return Err(disagrees(format!("its table has {} bytes, expected {}", table.size, size_of::<PluginTable>())));
+    // What came later may be missing in libraries that were built before.
+    let least = offset_of!(PluginTable, implementations);
+    if table.size < least {
+        return Err(disagrees(format!("its table has {} bytes, expected {least}", table.size)));
     }
     let counts = [
         ("classes", table.class_count, metadata.classes.len()),
@@ -75,7 +79,7 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     }
     // SAFETY: a library with metadata of this version keeps the rules of the boundary: so many tables are there.
     let code = || unsafe {
-        let mut code = Code { classes: Vec::new(), loops: Vec::new(), rules: Vec::new() };
+        let mut code = Code { classes: Vec::new(), loops: Vec::new(), rules: Vec::new(), implementation: None };
         let names = metadata.class_names();
         for ((class, of), asked) in
             all(table.classes, "class", &names)?.into_iter().zip(&names).zip(metadata.asked_functions())
@@ -98,6 +102,13 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
         let names: Vec<String> = metadata.rules.iter().map(|rule| rule.code.id.to_owned()).collect();
         for (rule, of) in all(table.rules, "rule", &names)?.into_iter().zip(&names) {
             code.rules.push(ImportedRule::new(*rule, Owner::of(&format!("rule `{of}`"), name)));
+        }
+        if let Some(language) = metadata.implementations.first() {
+            let of = format!("implementations of `{language}`");
+            let given = table.size >= size_of::<PluginTable>();
+            let table = whole(if given { table.implementations } else { ptr::null() }, &of)?;
+            whole((*table).component, &of)?;
+            code.implementation = Some(Implementation::new(&*table, name));
         }
         Ok(code)
     };

@@ -35,6 +35,9 @@ pub struct Metadata {
     /// Its rules over whole fleets.
     #[serde(default)]
     pub(super) rules: Vec<RuleMetadata>,
+    /// The languages whose classes it runs.
+    #[serde(default)]
+    pub implementations: Vec<String>,
 }
 
 impl Metadata {

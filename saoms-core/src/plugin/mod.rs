@@ -9,7 +9,7 @@ mod copy;
 mod declared_names;
 mod error;
 mod file;
-
+mod implementation;
 mod library;
 mod metadata;
 mod named;
@@ -25,13 +25,14 @@ use saoms_api::rule::FleetView;
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
+use boundary::Implementation;
 pub use boundary::{ImportedClass, ImportedLoopClass, ImportedRule};
 pub use error::PluginError;
 pub(crate) use file::read_section;
 pub(crate) use library::load_table;
 pub use metadata::Metadata;
-pub(crate) use search::libraries;
 pub use search::{FoundLibraries, Search};
+pub(crate) use search::{beside_the_program, libraries};
 
 use saoms_lang::registry::{LoopProvider, Provider, Registry, RegistryError, RuleProvider};
 
@@ -41,6 +42,7 @@ struct Code {
     classes: Vec<ImportedClass>,
     loops: Vec<ImportedLoopClass>,
     rules: Vec<ImportedRule>,
+    implementation: Option<Implementation>,
 }
 
 /// The use that may be made of the code of a library.

@@ -35,6 +35,10 @@ impl LibraryResolver for Search {
             },
         }
     }
+
+    fn declare(&self, folder: &Path, kind: &str, named: (&str, &str), registry: &mut Registry) -> LibraryLink {
+        self.declare_class(folder, kind, named, registry)
+    }
 }
 
 /// The path by which a library is registered, which is done now unless it is already.

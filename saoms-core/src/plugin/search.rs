@@ -1,4 +1,5 @@
 use std::collections::BTreeSet;
+use std::env;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -46,7 +47,7 @@ impl Search {
     }
 
     /// True if the user named a library, or the folder that it is in.
-    fn is_named(&self, path: &Path) -> bool {
+    pub(super) fn is_named(&self, path: &Path) -> bool {
         is_among(path, self.named.iter().chain(&self.folders))
     }
 
@@ -100,14 +101,17 @@ impl Search {
         let mut unreadable = BTreeSet::new();
         for path in &self.named {
             if !path.is_dir() {
-                look(path, true, &mut found);
+                // A module names itself: what runs it is another library.
+                if path.extension().is_none_or(|ending| ending != MODULE) || !path.is_file() {
+                    look(path, true, &mut found);
+                }
                 continue;
             }
             let libraries = libraries(path);
             for library in &libraries {
                 look(library, false, &mut found);
             }
-            if libraries.is_empty() {
+            if libraries.is_empty() && !has_modules(path) {
                 // It may lie beside a composite, too.
                 unreadable.insert(identity(path));
                 let message = match fs::read_dir(path) {
@@ -131,6 +135,26 @@ impl Search {
         }
         found
     }
+}
+
+/// The ending of modules in Python.
+const MODULE: &str = "py";
+
+/// True if a folder has modules in Python, or packages of such.
+fn has_modules(folder: &Path) -> bool {
+    let Ok(entries) = fs::read_dir(folder) else { return false };
+    entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .any(|path| path.extension().is_some_and(|ending| ending == MODULE) || path.join("__init__.py").is_file())
+}
+
+/// The folder of the program, and that of libraries beside it as packages have them: `bin` and `lib/saoms`.
+pub(crate) fn beside_the_program() -> Vec<PathBuf> {
+    let Some(folder) = env::current_exe().ok().and_then(|program| Some(program.parent()?.to_owned())) else {
+        return Vec::new();
+    };
+    let installed = folder.parent().map(|above| above.join("lib/saoms"));
+    std::iter::once(folder).chain(installed).collect()
 }
 
 /// True if a file is one of these places, or in one of them.

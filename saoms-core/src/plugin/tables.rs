@@ -3,7 +3,7 @@
 
 use std::mem::offset_of;
 
-use saoms_abi::{ClassTable, ComponentTable, LoopClassTable, LoopTable, RuleTable};
+use saoms_abi::{ClassTable, ComponentTable, ImplementationTable, LoopClassTable, LoopTable, RuleTable};
 use saoms_api::boundary::null_in;
 
 /// A table of functions, which begins with its size.
@@ -34,6 +34,7 @@ table!(
 table!(LoopClassTable: construct, looping;);
 table!(LoopTable: effect, entries, initialize, monitor, adapt, shutdown, destroy;);
 table!(RuleTable: check;);
+table!(ImplementationTable: declare, construct, component;);
 
 /// Checks that a table of a class, a loop or a rule is whole.
 ///

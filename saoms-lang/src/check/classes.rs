@@ -1,5 +1,7 @@
 //! The class of each component.
 
+mod in_python;
+
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -90,17 +92,18 @@ fn without_implementation(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 
 /// The name of the class of a component that names one.
 fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
-    const SUPPORTED: &str =
-        "name the class of the component: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
+    const SUPPORTED: &str = "name the class of the component: `implementation.java class=\"...\"`, `implementation.rust class=\"...\"` or \
+        `implementation.python module=\"...\" class=\"...\"`";
     let implementation = component.implementation.as_ref()?;
     match &implementation.kind {
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
+        ImplementationKind::Python { name, .. } => name.as_ref(),
         // Unfolded already.
         ImplementationKind::Composite { .. } => None,
         ImplementationKind::Other { .. } if assume_classes => None,
         ImplementationKind::Other { kind, is_sca } => {
             let element = quoted(&format!("implementation.{kind}"));
-            let is_of_sca = *is_sca || !["java", "rust", "composite"].contains(&kind.as_str());
+            let is_of_sca = *is_sca || !["java", "rust", "python", "composite"].contains(&kind.as_str());
             let (message, help) = match is_of_sca {
                 true => (format!("this program cannot run {element}"), SUPPORTED),
                 false => (
@@ -128,7 +131,14 @@ fn is_in_library(
     report: &mut Report<'_>,
 ) -> bool {
     let Some(implementation) = &component.implementation else { return true };
-    let ImplementationKind::Rust { library: Some(library), .. } = &implementation.kind else { return true };
+    let library = match &implementation.kind {
+        ImplementationKind::Rust { library: Some(library), .. } => library,
+        ImplementationKind::Python { module: Some(module), class: Some(class), .. } => {
+            let link = contribution.library(implementation.origin);
+            return in_python::is_declared((module, class), link, assume_classes, report);
+        }
+        _ => return true,
+    };
     let wrong = |message: String| Diagnostic::new(&codes::LIBRARY, library.location, message);
     let found = match contribution.library(implementation.origin) {
         Some(LibraryLink::To(path)) => {
@@ -169,7 +179,9 @@ fn is_in_library(
                 "write the path of the library from the folder of the composite, or name its folder with `--plugin`",
             )
         }
-        None => wrong(format!("the library {} was not searched for", quoted(library))),
+        Some(LibraryLink::Undeclared(_)) | None => {
+            wrong(format!("the library {} was not searched for", quoted(library)))
+        }
     };
     if !assume_classes {
         report.push(found);
@@ -180,6 +192,9 @@ fn is_in_library(
 /// The library that a component's composite names for its class, as the first composite would name it.
 pub(crate) fn library(component: &ComponentElement, contribution: &Contribution, sources: &Sources) -> Option<String> {
     let implementation = component.implementation.as_ref()?;
+    if matches!(implementation.kind, ImplementationKind::Python { .. }) {
+        return None;
+    }
     let Some(LibraryLink::To(path)) = contribution.library(implementation.origin) else { return None };
     let first = contribution.asked_for().first()?;
     let folder = Path::new(sources.get(first.file()).path()).parent().unwrap_or(Path::new(""));

@@ -18,7 +18,8 @@ pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => {
             class.iter().map(|class| class.replace('.', "/")).collect()
         }
-        ImplementationKind::Composite { .. } => Vec::new(),
+        // It declares itself.
+        ImplementationKind::Composite { .. } | ImplementationKind::Python { .. } => Vec::new(),
         ImplementationKind::Other { kind, .. } => {
             let names: &[&str] = match kind.as_str() {
                 "script" | "python" => &["script"],

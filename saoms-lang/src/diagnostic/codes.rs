@@ -181,7 +181,7 @@ codes! {
     VALUE_IN_TWO_WAYS = "S3012" Error "value-in-two-ways" ("ASM50033"): "A property is given a value in two ways at once.";
     NOT_UNIQUE = "S3013" Error "not-unique" [Judgement, OutlivesExpansion]: "Two components have the same value for a property that must be unique.";
     CONSTRUCTION = "S3014" Error "construction" [AbsentPart]: "The class of a component rejects its values.";
-    LIBRARY = "S3015" Error "library": "The library that an implementation names is not found, cannot be used, or has no such class.";
+    LIBRARY = "S3015" Error "library": "The library or the module that an implementation names is not found, cannot be used, or has no such class.";
     ONLY_READ = "S3016" Error "only-read" [OutlivesExpansion]: "A fleet needs the code of a library that was found, but that no option names. A note if the fleet is only checked.";
     EXPRESSION_UNREAD = "S3017" Warning "expression-unread" [OutlivesExpansion]: "A value contains an expression, but the component has no count, or is the source of a property: it is not evaluated.";
     // S40: tasks and topics.

@@ -216,7 +216,7 @@ impl Loader<'_> {
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
         let message = format!("{whose} has no element {}", quoted(name));
         let one = Diagnostic::new(code, location, message);
-        // A slip in `implementation.python` is one in its last part.
+        // A slip in `implementation.jva` is one in its last part.
         let slip = match name.split_once('.') {
             Some((kind, variant)) if known.iter().any(|one| one.split('.').next() == Some(kind)) => {
                 let variants = known.iter().filter(|one| one.split_once('.').is_some_and(|(of, _)| of == kind));
@@ -241,9 +241,12 @@ impl Loader<'_> {
                 one.suggest_edits(format!("write it as {}", quoted(&meant)), edits)
             }
             Some(meant) => renamed(one, element, meant),
-            None if name.starts_with("implementation.") => one
-                .help("if it is an extension, write it with a prefix of its own namespace")
-                .help("`implementation.rust` and `implementation.java` name a class, `implementation.composite` a composite"),
+            None if name.starts_with("implementation.") => {
+                one.help("if it is an extension, write it with a prefix of its own namespace").help(
+                    "`implementation.rust`, `implementation.java` and `implementation.python` name a class, \
+                    `implementation.composite` a composite",
+                )
+            }
             None if name.contains('.') => {
                 one.help("if it is an extension, write it with a prefix of its own namespace").help(holds())
             }

@@ -4,7 +4,7 @@ use super::children::{Family, is_defined, renaming, variant};
 use super::other_words::is_class_of_component;
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
-    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind, LOOP,
+    IMPLEMENTATION_JAVA, IMPLEMENTATION_PYTHON, IMPLEMENTATION_RUST, Kind, LOOP,
 };
 use super::{Loader, PassedOver};
 use crate::diagnostic::{Diagnostic, Severity, codes, meant_boolean, nearest, quoted};
@@ -152,14 +152,26 @@ impl Loader<'_> {
                 let class = self.required(element, "class");
                 ImplementationKind::Rust { class, library: self.optional(element, "library") }
             }
+            (Family::Sca | Family::Own, "implementation.python") => {
+                self.parts_of(element, &IMPLEMENTATION_PYTHON);
+                let (module, class) = (self.required(element, "module"), self.required(element, "class"));
+                let named = module.as_ref().zip(class.as_ref());
+                let name = named.map(|(module, class)| Text::new(format!("{module}.{class}").into(), class.location));
+                ImplementationKind::Python { module, class, name }
+            }
             (Family::Own, _) => {
                 _ = self.unexpected(element, &COMPONENT, family);
                 return None;
             }
             (Family::Sca, _) if !is_defined(element) => {
                 let meant = self.unexpected(element, &COMPONENT, family)?;
-                let is_read =
-                    matches!(meant, "implementation.java" | "implementation.rust" | "implementation.composite");
+                let is_read = matches!(
+                    meant,
+                    "implementation.java"
+                        | "implementation.rust"
+                        | "implementation.python"
+                        | "implementation.composite"
+                );
                 return is_read.then(|| self.implementation(element, family, meant))?;
             }
             _ => ImplementationKind::Other { kind: variant(element, "implementation."), is_sca: family == Family::Sca },

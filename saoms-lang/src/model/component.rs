@@ -54,10 +54,12 @@ impl ComponentElement {
         self.references.iter().find(|reference| reference.name == name)
     }
 
-    /// The class that the registry is asked for: that of `implementation.java` or `implementation.rust`.
+    /// The class that the registry is asked for: that of `implementation.java`, `implementation.rust` or
+    /// `implementation.python`.
     pub fn class(&self) -> Option<&Text> {
         match &self.implementation.as_ref()?.kind {
             ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
+            ImplementationKind::Python { name, .. } => name.as_ref(),
             _ => None,
         }
     }
@@ -91,6 +93,15 @@ pub enum ImplementationKind {
         class: Option<Text>,
         /// `library`: the plugin that has the class.
         library: Option<Text>,
+    },
+    /// `implementation.python`, in the SCA namespace or in that of SAOMS.
+    Python {
+        /// `module`
+        module: Option<Text>,
+        /// `class`
+        class: Option<Text>,
+        /// The name in the registry: that of the module, a dot, and that of the class, at the place of the latter.
+        name: Option<Text>,
     },
     /// Any other, of SCA or foreign; its element has the attributes.
     Other {

@@ -45,7 +45,7 @@ pub enum Link {
     Missing(Missing),
 }
 
-/// The target of the `library` of an implementation.
+/// The target of the `library`, or of the `module`, of an implementation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LibraryLink {
     /// To this file, whose classes are in the registry.
@@ -56,6 +56,21 @@ pub enum LibraryLink {
     Outside(PathBuf),
     /// Nowhere: the files that it would have been.
     Missing(Vec<PathBuf>),
+    /// To code in another language that declares no class that could be used.
+    Undeclared(Vec<ClassFault>),
+}
+
+/// A fault of the code of a class in another language.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ClassFault {
+    /// The attribute of the implementation that it is about: `module` or `class`.
+    pub part: String,
+    /// The fault, with its place in the code if it has one.
+    pub message: String,
+    /// Lines of help.
+    pub help: Vec<String>,
+    /// The texts that are probably meant.
+    pub instead: Vec<String>,
 }
 
 /// The knowledge about a composite that was not found.
@@ -186,12 +201,12 @@ impl Contribution {
         self.links.get(&(origin.file(), origin.element))
     }
 
-    /// The target of the `library` of an implementation; `None` where it was not resolved.
+    /// The target of the `library` or `module` of an implementation; `None` where it was not resolved.
     pub fn library(&self, implementation: Origin) -> Option<&LibraryLink> {
         self.libraries.get(&(implementation.file(), implementation.element))
     }
 
-    /// Says where the `library` of an implementation leads.
+    /// Says where the `library` or `module` of an implementation leads.
     pub fn set_library(&mut self, implementation: Origin, link: LibraryLink) {
         self.libraries.insert((implementation.file(), implementation.element), link);
     }

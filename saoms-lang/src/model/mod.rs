@@ -32,7 +32,7 @@ pub use composite::{ComponentType, Composite, Include, SeverityRule, WireElement
 pub use contract::{
     Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceElement, ServiceElement,
 };
-pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
+pub use contribution::{ClassFault, Contribution, LibraryLink, Link, Missing, Naming};
 pub use http_address::{AddressFault, AddressHelp, HttpAddress};
 pub use property::{ComponentProperty, Property, PropertyDetails, ValueDocument};
 pub use run_settings::{Hangup, RunSettings};

@@ -43,6 +43,11 @@ pub trait LibraryResolver {
         outside: &dyn Fn(&Path) -> Option<PathBuf>,
         registry: &mut Registry,
     ) -> LibraryLink;
+
+    /// Looks for a class in another language that a composite in a folder names, and adds what it declares to the
+    /// registry, as `MODULE.CLASS`. None of its code runs. The `kind` is that of the implementation, such as `python`;
+    /// module and class are what it is named by.
+    fn declare(&self, folder: &Path, kind: &str, named: (&str, &str), registry: &mut Registry) -> LibraryLink;
 }
 
 impl ClassPath for Registry {

@@ -63,6 +63,12 @@ impl RegisteredClass {
         self.provider.is_only_read()
     }
 
+    /// The language of its code where a library runs it in another one, such as `python`: its name is then that of its
+    /// module, a dot, and that of the class in it.
+    pub fn language(&self) -> Option<&str> {
+        self.provider.language()
+    }
+
     /// Constructs a component. `values` are all values, those preset by the name included; absent ones take their
     /// defaults.
     ///
@@ -99,6 +105,11 @@ pub trait Provider: fmt::Debug + Send + Sync {
 
     /// As [`RegisteredClass::origin`].
     fn origin(&self) -> Option<&Path>;
+
+    /// As [`RegisteredClass::language`].
+    fn language(&self) -> Option<&str> {
+        None
+    }
 
     /// As [`RegisteredClass::is_only_read`].
     fn is_only_read(&self) -> bool {

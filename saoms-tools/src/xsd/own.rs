@@ -8,7 +8,8 @@ use super::sca::{attributes as declared, holding, name_of};
 use super::words::{Names, Words};
 use saoms_lang::diagnostic::{Severity, SeverityLevel};
 use saoms_lang::load::vocabulary::{
-    BINDING_REST, Holds, IMPLEMENTATION_RUST, INTERFACE_RUST, Kind, Known, LOOP, OWN_ATTRIBUTES, SEVERITY, children,
+    BINDING_REST, Holds, IMPLEMENTATION_PYTHON, IMPLEMENTATION_RUST, INTERFACE_RUST, Kind, Known, LOOP, OWN_ATTRIBUTES,
+    SEVERITY, children,
 };
 use saoms_lang::model::{Hangup, Multiplicity, SAOMS_NAMESPACE, Version};
 
@@ -21,7 +22,7 @@ const DOC: &str =
 pub(super) const DEFAULTS: [(&str, &str); 2] = [("if", "true"), ("from", "1")];
 
 pub(super) fn schema(words: &Words) -> NewElement {
-    let own = [&LOOP, &SEVERITY, &IMPLEMENTATION_RUST, &INTERFACE_RUST, &BINDING_REST];
+    let own = [&LOOP, &SEVERITY, &IMPLEMENTATION_PYTHON, &IMPLEMENTATION_RUST, &INTERFACE_RUST, &BINDING_REST];
     // Several elements can have an attribute.
     let attributes: BTreeMap<&str, &Known> = OWN_ATTRIBUTES.iter().map(|(_, known)| (known.name, known)).collect();
     let attributes = attributes.into_values().map(|known| {

@@ -69,9 +69,10 @@ pub(crate) fn libraries(assembly: &Assembly) -> Vec<PathBuf> {
     all.into_iter().map(Path::to_owned).collect()
 }
 
-/// The libraries that a component's class and loops come from.
+/// The libraries that a component's class and loops come from. Code in another language is not replaced.
 fn origins(component: &ComponentSpec) -> impl Iterator<Item = &Path> {
-    component.class.origin().into_iter().chain(component.loops.iter().filter_map(|one| one.class.origin()))
+    let own = component.class.origin().filter(|_| component.class.language().is_none());
+    own.into_iter().chain(component.loops.iter().filter_map(|one| one.class.origin()))
 }
 
 impl Watcher {

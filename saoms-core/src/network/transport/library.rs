@@ -1,5 +1,4 @@
 use std::collections::BTreeSet;
-use std::env;
 use std::path::{Path, PathBuf};
 
 use saoms_abi::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportTable};
@@ -7,7 +6,7 @@ use serde::Deserialize;
 
 use super::TransportError;
 use super::error::shown;
-use crate::plugin::{PluginError, libraries, load_table, read_section};
+use crate::plugin::{PluginError, beside_the_program, libraries, load_table, read_section};
 
 /// What the metadata of a transport say.
 #[derive(Clone, Debug, Deserialize)]
@@ -124,15 +123,6 @@ impl TransportInfo {
         }
         serde_json::from_str(&text).map(Some).map_err(|error| malformed(error.to_string()))
     }
-}
-
-/// The folder of the program, and that of libraries beside it as packages have them: `bin` and `lib/saoms`.
-fn beside_the_program() -> Vec<PathBuf> {
-    let Some(folder) = env::current_exe().ok().and_then(|program| Some(program.parent()?.to_owned())) else {
-        return Vec::new();
-    };
-    let installed = folder.parent().map(|above| above.join("lib/saoms"));
-    std::iter::once(folder).chain(installed).collect()
 }
 
 /// The libraries of a place: a folder, or a library itself.

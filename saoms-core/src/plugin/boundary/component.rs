@@ -2,7 +2,7 @@ use std::ffi::c_void;
 use std::mem::MaybeUninit;
 use std::ptr;
 
-use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
+use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, FindingSink, HostHandle, PropertyView, Sink, Status};
 use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::{Function, Owner, enter, looked_after, subject};
@@ -51,17 +51,27 @@ impl ImportedClass {
         let owner = subject(self.library);
         // SAFETY: `new`'s caller promised that the function keeps the rules.
         let (instance, refused) = unsafe { construct(self.construct, owner, values) }?;
-        let component = ImportedComponent { table: self.component, instance, owner, lease: Lease::default() };
-        refused?;
-        Ok(Box::new(component))
+        component(self.component, instance, owner, refused)
     }
+}
+
+/// A component that was made, unless the constructor refused what it made.
+pub(super) fn component(
+    table: ComponentTable,
+    instance: *mut c_void,
+    owner: &'static Owner,
+    refused: Result<(), Failure>,
+) -> Result<Box<dyn DynComponent>, Failure> {
+    let component = ImportedComponent { table, instance, owner, lease: Lease::default() };
+    refused?;
+    Ok(Box::new(component))
 }
 
 /// A copy of the functions of components, with null for those that the library does not have.
 ///
 /// # Safety
 /// The pointer leads to a table, with all functions that may not be null.
-unsafe fn read(table: *const ComponentTable) -> ComponentTable {
+pub(super) unsafe fn read(table: *const ComponentTable) -> ComponentTable {
     let mut copy = MaybeUninit::<ComponentTable>::zeroed();
     // SAFETY: as the caller promises, so many bytes are there. All functions that may not be null are among them, and
     // zeros are a null function.
@@ -84,14 +94,25 @@ pub(super) unsafe fn construct(
     owner: &'static Owner,
     values: &[(SmolStr, PropertyValue)],
 ) -> Result<(*mut c_void, Result<(), Failure>), Failure> {
+    constructed(owner, values, |values, count, made, findings, error| {
+        // SAFETY: as the caller promises; the rest is lent to this call.
+        unsafe { construct(values, count, made, findings, error) }
+    })
+}
+
+/// The same by a function that may have further arguments, and keeps the rules of the boundary.
+pub(super) fn constructed(
+    owner: &'static Owner,
+    values: &[(SmolStr, PropertyValue)],
+    construct: impl Fn(*const PropertyView, usize, *mut *mut c_void, FindingSink, Sink) -> Status,
+) -> Result<(*mut c_void, Result<(), Failure>), Failure> {
     let views = PropertyViews::of(values);
     let mut instance = ptr::null_mut();
     let _looked = looked_after(owner, Function::Construct);
     let _entered = enter(owner, Function::Construct);
     // An exception of another language ends the program here, where it is known whose it is.
     let (result, findings) = contained(|| {
-        // SAFETY: as the caller promises; the rest is lent to this call.
-        call_with_findings(|findings, error| unsafe {
+        call_with_findings(|findings, error| {
             construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
         })
     })?;

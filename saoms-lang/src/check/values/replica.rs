@@ -127,9 +127,12 @@ fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) 
     each(&mut component.name);
     [&mut component.path, &mut component.site, &mut component.node].into_iter().flatten().for_each(|text| each(text));
     if let Some(implementation) = &mut component.implementation {
-        use crate::model::ImplementationKind::{Java, Rust};
+        use crate::model::ImplementationKind::{Java, Python, Rust};
         if let Java { class } | Rust { class, .. } = &mut implementation.kind {
             class.iter_mut().for_each(&mut *each);
+        }
+        if let Python { module, class, name } = &mut implementation.kind {
+            [module, class, name].into_iter().flatten().for_each(&mut *each);
         }
     }
     component.properties.iter_mut().for_each(|property| of_property(property, each));

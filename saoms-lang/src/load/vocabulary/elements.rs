@@ -165,6 +165,13 @@ kinds! {
         REQUIRES; POLICY_SETS;
     } POLICY_CHILDREN
 
+    /// A class in Python.
+    pub IMPLEMENTATION_PYTHON = "implementation.python": "A class in Python, which the plugin `saoms_python` runs." {
+        required "module" Text: "The module that contains the class, such as `counter` for `counter.py` beside the composite.";
+        required "class" Text: "The name of the class in its module.";
+        REQUIRES; POLICY_SETS;
+    } POLICY_CHILDREN
+
     /// The binding of SCA itself.
     pub BINDING_SCA = "binding.sca": "A connection within the fleet: the default if there is no binding." {
         known "name" Name: "The name of the binding, for targets such as `Component/service/binding`.";
@@ -205,11 +212,11 @@ kinds! {
 
 /// The elements of composites whose parts are known. Of two of one name, the first is that of a composite, the other
 /// that of a component.
-pub(super) const KINDS: [&Kind; 19] = [
+pub(super) const KINDS: [&Kind; 20] = [
     &COMPOSITE, &COMPONENT, &INCLUDE, &WIRE, &COMPOSITE_PROPERTY, &COMPOSITE_SERVICE, &COMPOSITE_REFERENCE,
     &COMPONENT_PROPERTY, &COMPONENT_SERVICE, &COMPONENT_REFERENCE, &CALLBACK, &IMPLEMENTATION_JAVA,
-    &IMPLEMENTATION_COMPOSITE, &IMPLEMENTATION_RUST, &INTERFACE_JAVA, &INTERFACE_RUST, &INTERFACE_WSDL, &BINDING_SCA,
-    &BINDING_REST,
+    &IMPLEMENTATION_COMPOSITE, &IMPLEMENTATION_RUST, &IMPLEMENTATION_PYTHON, &INTERFACE_JAVA, &INTERFACE_RUST,
+    &INTERFACE_WSDL, &BINDING_SCA, &BINDING_REST,
 ];
 
 /// Those that the model does not keep.
@@ -285,7 +292,8 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
 ];
 
 /// The elements that SAOMS adds in its own namespace.
-pub const OWN_ELEMENTS: &[&str] = &["binding.rest", "implementation.rust", "interface.rust", "loop", "severity"];
+pub const OWN_ELEMENTS: &[&str] =
+    &["binding.rest", "implementation.python", "implementation.rust", "interface.rust", "loop", "severity"];
 
 /// The elements of SCA that a `severity` stands in.
 pub const SEVERITY_PARENTS: &[&str] = &["composite", "component", "service", "reference", "wire", "include"];

@@ -26,7 +26,7 @@ fn an_element_of_sca_in_another_namespace_is_told() {
         2:22-43 error S3002: this program cannot run `implementation.java` of another namespace
           help: to use the element of SCA, write it with the prefix of the elements around it, or without a prefix if they have none
         3:22-43 error S3002: this program cannot run `implementation.bpel`
-          help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
+          help: name the class of the component: `implementation.java class="..."`, `implementation.rust class="..."` or `implementation.python module="..." class="..."`
     "#]].assert_eq(&faults(implementation));
 }
 

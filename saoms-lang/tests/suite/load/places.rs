@@ -93,6 +93,10 @@ fn texts(composite: &Composite) -> Vec<&Text> {
                     all.extend(class);
                     all.extend(library.as_ref());
                 }
+                ImplementationKind::Python { module, class, .. } => {
+                    all.extend(module);
+                    all.extend(class);
+                }
                 ImplementationKind::Other { .. } => {}
             }
         }

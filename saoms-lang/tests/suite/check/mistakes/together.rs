@@ -385,9 +385,9 @@ fn slips_that_many_make_have_hints() {
           help: it offers `position` (example.Positions)
         5:42-46 error S2045: write the expression here without `${` and `}`
           fix: replace `${3}` with `3` [5:42-46 "3"]
-        6:22-43 error S1004: SCA 1.1 has no element `implementation.python`
+        6:22-43 error S1004: SCA 1.1 has no element `implementation.prolog`
           help: if it is an extension, write it with a prefix of its own namespace
-          help: `implementation.rust` and `implementation.java` name a class, `implementation.composite` a composite
+          help: `implementation.rust`, `implementation.java` and `implementation.python` name a class, `implementation.composite` a composite
         7:22-40 error S1004: SCA 1.1 has no element `implementation.jva`
           fix: replace `implementation.jva` with `implementation.java` [7:22-40 "implementation.java"]
         8:53-65 error S2031: there is no composite `in.composite` in the namespace `urn:t`
@@ -398,7 +398,7 @@ fn slips_that_many_make_have_hints() {
 <component name=\"N\"><implementation.java class=\"example.Navigator\"/></component>
 <wire source=\"A/position\" target=\"N/wheels\"/>
 <component name=\"B${index}\" saoms:count=\"${3}\"><implementation.java class=\"example.Gps\"/></component>
-<component name=\"P\"><implementation.python class=\"example.Gps\"/></component>
+<component name=\"P\"><implementation.prolog class=\"example.Gps\"/></component>
 <component name=\"J\"><implementation.jva class=\"example.Gps\"/></component>
 <component name=\"I\"><implementation.composite name=\"in.composite\"/></component>",
     ));

@@ -68,12 +68,12 @@ fn what_cannot_run_says_so() {
         2:53-58 error S2031: there is no composite `inner` in the namespace `urn:t`
           help: name the file of that composite in the command as well
         3:22-41 error S3002: this program cannot run `implementation.bpel`
-          help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
+          help: name the class of the component: `implementation.java class="..."`, `implementation.rust class="..."` or `implementation.python module="..." class="..."`
         4:71-80 error S3015: the library `libgps.so` was not searched for
         5:16-21 error S2030: there is no composite `other` in the namespace `urn:t`
           help: name the file of that composite in the command as well
         6:22-45 error S3002: this program cannot run `implementation.script`
-          help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
+          help: name the class of the component: `implementation.java class="..."`, `implementation.rust class="..."` or `implementation.python module="..." class="..."`
     "#]]
     .assert_eq(&faults(
         r#"<component name="A"><implementation.composite name="inner"/></component>

@@ -44,6 +44,10 @@ impl LibraryResolver for NoPlugins {
     fn open(&self, _: &Path, _: &str, _: &dyn Fn(&Path) -> Option<PathBuf>, _: &mut Registry) -> LibraryLink {
         LibraryLink::Missing(Vec::new())
     }
+
+    fn declare(&self, _: &Path, _: &str, _: (&str, &str), _: &mut Registry) -> LibraryLink {
+        LibraryLink::Missing(Vec::new())
+    }
 }
 
 /// A folder that is not on disk.
