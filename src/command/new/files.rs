@@ -39,6 +39,11 @@ impl Names {
             "saoms", "saoms-abi", "saoms-api", "saoms-components", "saoms-core", "saoms-derive", "saoms-lang",
             "saoms-registry", "saoms-testkit", "saoms-tools",
         ];
+        // Nor keywords of Python those of its modules.
+        const PYTHON: &[&str] = &[
+            "and", "assert", "class", "def", "del", "elif", "except", "finally", "from", "global", "import", "is",
+            "lambda", "nonlocal", "not", "or", "pass", "raise", "with",
+        ];
         if !starts || !fits {
             return Err(format!(
                 "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, \
@@ -49,6 +54,8 @@ impl Names {
             "a name of Rust itself".to_owned()
         } else if CRATES.contains(&package.replace('_', "-").as_str()) {
             "a crate of SAOMS itself".to_owned()
+        } else if kind == PluginKind::Python && PYTHON.contains(&package) {
+            "a name of Python itself".to_owned()
         } else if let Some(name) = Template::of(kind).clash(&class) {
             format!("the name of its type, and `{name}` is used by the code that is made")
         } else {
@@ -146,6 +153,13 @@ impl Template {
                 about: "",
                 components: false,
             },
+            PluginKind::Python => Template {
+                code: include_str!("templates/python/plugin.py"),
+                fleet: "",
+                composite: include_str!("templates/python/fleet.composite"),
+                about: "",
+                components: false,
+            },
         }
     }
 
@@ -212,6 +226,19 @@ pub(super) fn plugin_in_c(names: &Names) -> Vec<(PathBuf, String)> {
         ("include/saoms.h".into(), include_str!("../../../saoms-abi/include/saoms.h").to_owned()),
         ("include/saoms_author.h".into(), include_str!("../../../saoms-abi/include/saoms_author.h").to_owned()),
         ("fleet.composite".into(), names.fill(composite)),
+    ]
+}
+
+/// The files of components in Python. The package that they import is there for editors; the plugin brings it itself.
+pub(super) fn plugin_in_python(names: &Names) -> Vec<(PathBuf, String)> {
+    let Template { code, composite, .. } = Template::of(PluginKind::Python);
+    vec![
+        ("README.md".into(), names.fill(include_str!("templates/python/README.md"))),
+        (".gitignore".into(), "__pycache__\n".to_owned()),
+        (format!("{}.py", names.library).into(), names.fill(code)),
+        ("test_fleet.py".into(), include_str!("templates/python/test_fleet.py").to_owned()),
+        ("fleet.composite".into(), names.fill(composite)),
+        ("typings/saoms/__init__.py".into(), include_str!("../../../plugins/python/saoms/__init__.py").to_owned()),
     ]
 }
 

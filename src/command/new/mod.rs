@@ -35,7 +35,7 @@ pub(crate) enum NewKind {
         path: PathBuf,
 
         /// Kind of plugin: a component, the hardware of a robot, a loop of robots, a robot that extends the one that
-        /// ships, a master that does, or a component in C
+        /// ships, a master that does, or a component in C or in Python
         #[arg(long, value_enum, default_value_t = PluginKind::Component)]
         kind: PluginKind,
 
@@ -66,6 +66,7 @@ pub(crate) enum PluginKind {
     Extension,
     Master,
     C,
+    Python,
 }
 
 /// Creates the files. Existing files are never changed.
@@ -93,6 +94,10 @@ fn plugin(path: &Path, kind: PluginKind, api: Option<&str>) -> Result<String, St
         PluginKind::C => {
             (files::plugin_in_c(&names), "make test\n  saoms run fleet.composite --virtual --for 10s --plugin build")
         }
+        PluginKind::Python => (
+            files::plugin_in_python(&names),
+            "python3 -m unittest\n  saoms run fleet.composite --virtual --for 10s --plugin .",
+        ),
         kind => (
             files::plugin(&names, kind, &files::source(api)?, unlisted_program().as_deref()),
             "cargo test\n  cargo build\n  saoms run fleet.composite --virtual --for 10s --plugin target/debug",

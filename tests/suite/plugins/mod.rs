@@ -5,6 +5,7 @@ mod c_zones;
 mod counter;
 mod examples;
 mod loops;
+mod python;
 mod reload;
 mod wheels;
 
