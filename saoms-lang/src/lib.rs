@@ -15,4 +15,4 @@ pub mod project;
 pub mod source;
 pub mod syntax;
 
-pub use saoms_registry::{OperationSchema, event, registry, schema};
+pub use saoms_registry::{OperationSchema, event, registry, ros, schema};

@@ -9,10 +9,10 @@ use mcap::write::{Metadata, NoSeek};
 use mcap::{Attachment, Compression, McapResult, WriteOptions, Writer};
 use saoms_api::Message;
 use saoms_api::host::cdr;
+use saoms_registry::ros::RosType;
 use saoms_registry::schema::SchemaError;
 
 use crate::messages::Senders;
-use crate::ros::RosType;
 
 /// The name of the metadata of a run.
 pub(crate) const RUN: &str = "saoms";
@@ -45,7 +45,7 @@ pub(crate) struct ChannelForm {
 impl ChannelForm {
     /// A channel of messages in CDR with this schema of a declaration.
     pub(crate) fn of(topic: &str, schema: &str, role: Option<&str>) -> Result<ChannelForm, SchemaError> {
-        let RosType { name, text } = RosType::of(schema)?;
+        let RosType { name, text, .. } = RosType::of(schema)?;
         let mut metadata = BTreeMap::from([(SCHEMA.to_owned(), schema.to_owned())]);
         metadata.extend(role.map(|role| (ROLE.to_owned(), role.to_owned())));
         let schema = (name, "ros2msg".to_owned(), text.into_bytes());

@@ -12,7 +12,6 @@ mod messages;
 mod queue;
 mod reader;
 mod recording;
-mod ros;
 #[cfg(test)]
 mod tests;
 mod writing;
@@ -21,5 +20,4 @@ pub use error::RecordingError;
 pub use excerpt::Excerpt;
 pub use reader::{Channel, Part, Reader, RecordedFile, RecordedMessage};
 pub use recording::{RecordedRun, Recording};
-pub use ros::RosType;
 pub use writing::{REPORT, path_of_part};

@@ -13,7 +13,7 @@ use saoms_core::observe::{Beginning, LostEvents, Observer, Occurrence, RunEvent,
 
 use crate::drawer::{Drawer, HeardTopic};
 use crate::file::{ChannelForm, FileWriter, Item};
-use crate::{Excerpt, Part, Reader, RecordedRun, Recording, RosType, drawer};
+use crate::{Excerpt, Part, Reader, RecordedRun, Recording, drawer};
 
 const LAMP: &str = r#"{"name":"Lamp","fields":[{"name":"on","type":"bool"},{"name":"mode","type":
     {"enumeration":"uint8","values":{"WARM":0,"COLD":1}}}]}"#;
@@ -150,29 +150,6 @@ fn a_full_disk_gets_the_rest_when_it_has_room() {
     writer.bring(&mut disk).unwrap();
     fs::write(&path, disk.0).unwrap();
     assert_eq!(read(&path), (vec!["saoms".to_owned()], None));
-}
-
-#[test]
-fn types_have_the_form_that_ros_gives_the_same_bytes() {
-    let schema = r#"{"name":"Plan","fields":[
-        {"name":"stage","type":{"enumeration":"uint8","values":{"ASKED":0,"DONE":1}}},
-        {"name":"at","type":"time"},
-        {"name":"chargeX","type":{"array":"int32","length":2}},
-        {"name":"names","type":{"bounded":{"sequence":{"bounded":"string","most":5}},"most":3}},
-        {"name":"rows","type":{"sequence":{"sequence":{"name":"Block","fields":[{"name":"x","type":"int32"}]}}}},
-        {"name":"stamp","type":{"name":"builtin_interfaces/msg/Time","fields":[{"name":"sec","type":"int32"}]}},
-        {"name":"other","type":{"optional":{"name":"Block","fields":[]}}}]}"#;
-    let line = "=".repeat(80);
-    let expected = format!(
-        "uint8 STAGE_ASKED=0\nuint8 STAGE_DONE=1\nuint8 stage\n# Nanoseconds since the start of the run.\nuint64 at\n\
-         int32[2] charge_x\nstring<=5[<=3] names\nsaoms_msgs/PlanRows[] rows\nbuiltin_interfaces/Time stamp\n\
-         saoms_msgs/Block2[<=1] other\n{line}\nMSG: saoms_msgs/Block\nint32 x\n{line}\nMSG: saoms_msgs/PlanRows\n\
-         saoms_msgs/Block[] value\n{line}\nMSG: builtin_interfaces/Time\nint32 sec\n{line}\nMSG: saoms_msgs/Block2\n\
-         uint8 structure_needs_at_least_one_member\n"
-    );
-    let found = RosType::of(schema).unwrap();
-    assert_eq!((&*found.name, &*found.text), ("saoms_msgs/msg/Plan", &*expected));
-    assert_eq!(RosType::of(r#"{"name":"nav_msgs/msg/Path","fields":[]}"#).unwrap().name, "nav_msgs/msg/Path");
 }
 
 /// What was told of failures.

@@ -6,6 +6,7 @@
 pub mod event;
 mod operation;
 pub mod registry;
+pub mod ros;
 pub mod schema;
 
 use saoms_api::rule::Code;
