@@ -796,4 +796,55 @@ typedef struct SaomsTransportTable {
 // The function by which a transport gives its table: it takes the version of the program's boundary.
 typedef const struct SaomsTransportTable *(*SaomsTransportEntry)(uint32_t version);
 
+// The functions of a transport of topics: a library that exchanges messages with programs that do not speak the
+// program's own language, such as nodes of ROS 2. It knows topics and the types of their messages, and has the
+// metadata of a transport, whose member `carries` is `"topics"`.
+//
+// The first argument of each function but `open` and `judge` is a session. They are called from any thread, several
+// at once, and never after `close`. Messages are CDR, with its header of four bytes. A topic is a JSON text:
+//
+// | member | meaning |
+// | --- | --- |
+// | `topic` | its name, of the characters that names of ROS 2 may have, without a `/` in front |
+// | `type` | the type of its messages, as `saoms_msgs/msg/Position` |
+// | `definition` | the type as a text of ROS 2 (`ros2msg`), with the types in it |
+// | `description` | the type description as the JSON text whose SHA-256 is its hash (`RIHS01`) |
+// | `schema` | the type as declarations of messages have it, with the names of ROS 2 |
+// | `state` | true: its newest messages are wanted by late readers, too |
+typedef struct SaomsTopicTransportTable {
+    // The size of this table in bytes.
+    size_t size;
+    // The version of the boundary that the library was built with.
+    uint32_t version;
+    // The metadata, as in its own section of the library.
+    struct SaomsBytes metadata;
+    // As [`open`](crate::TransportTable::open) of other transports, with the same settings. `events.deliver` takes the
+    // messages of topics, with the token of the subscription; the key is the name of who sent the message, or empty.
+    // The attachment is empty, or says why what came is no message of the topic: it is counted and told. A session
+    // offers again for what there was no room. `events.link` with 1 and a reason tells what is wrong while the link is
+    // there.
+    SaomsStatus (*open)(struct SaomsBytes settings,
+                        const struct SaomsTransportEvents *events,
+                        void **session,
+                        struct SaomsSink error);
+    // As [`judge`](crate::TransportTable::judge) of other transports.
+    SaomsStatus (*judge)(struct SaomsBytes settings, struct SaomsSink faults);
+    // Says that the program publishes a topic. No two topics of a session, published or subscribed, have the same
+    // token.
+    SaomsStatus (*advertise)(void *session, struct SaomsBytes topic, uint64_t token, struct SaomsSink error);
+    // Publishes a message of the topic that was advertised with this token. `of` is a number: of a state topic the
+    // message takes the place of the one before it with the same number. Called by a thread that does nothing else: it
+    // may wait for as long as the network is congested. `FULL`: there is no link, or too much waits to be sent; the
+    // program keeps the message and tries again.
+    SaomsStatus (*publish)(void *session, uint64_t token, uint64_t of, struct SaomsBytes message, struct SaomsSink error);
+    // Asks for the messages of a topic, which are delivered with this token.
+    SaomsStatus (*subscribe)(void *session, struct SaomsBytes topic, uint64_t token, struct SaomsSink error);
+    // Sends what waits, for no longer than a second, leaves the network and frees the session. When it returns, no
+    // function of `events` runs or is called again.
+    void (*close)(void *session);
+} SaomsTopicTransportTable;
+
+// The function by which a transport of topics gives its table: it takes the version of the program's boundary.
+typedef const struct SaomsTopicTransportTable *(*SaomsTopicTransportEntry)(uint32_t version);
+
 #endif  /* SAOMS_H */

@@ -35,6 +35,7 @@ mod region;
 mod rule;
 mod status;
 mod stop;
+mod topics;
 mod transport;
 mod value;
 
@@ -52,6 +53,7 @@ pub use region::{DepartedView, RegionView};
 pub use rule::{FleetList, MemberView, RenamedView, RuleTable, TextList, WireView};
 pub use status::Status;
 pub use stop::StopView;
+pub use topics::{TopicTransportEntry, TopicTransportTable};
 pub use transport::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportEntry, TransportEvents, TransportTable};
 pub use value::{PropertyView, RecordView, ReportView, ValueView};
 

@@ -14,7 +14,8 @@ pub const TRANSPORT_VERSION: u32 = 1;
 /// | `abi` | the [`TRANSPORT_VERSION`] |
 /// | `package`, `version` | those of the library, for people |
 /// | `schemes` | the schemes of the urls that it serves, such as `["tcp", "tls"]`; `""` is a url without one, `host:port` |
-/// | `entry` | the name of its function of type [`TransportEntry`] |
+/// | `carries` | `"topics"`: it is a [`TopicTransportTable`](crate::TopicTransportTable), of networks of programs that do not speak the program's own language; where it is missing, a [`TransportTable`] |
+/// | `entry` | the name of its function of type [`TransportEntry`] or [`TopicTransportEntry`](crate::TopicTransportEntry) |
 pub const TRANSPORT_SECTION: &str = ".saoms.transport";
 
 /// The function by which a transport gives its table: it takes the version of the program's boundary.

@@ -72,26 +72,7 @@ impl Failure {
 #[macro_export]
 macro_rules! transport {
     ($transport:ty, $entry:ident, schemes: $schemes:literal) => {
-        /// The metadata.
-        const TEXT: &str = concat!(
-            r#"{"saoms":"transport","abi":1,"package":""#,
-            env!("CARGO_PKG_NAME"),
-            r#"","version":""#,
-            env!("CARGO_PKG_VERSION"),
-            r#"","schemes":"#,
-            $schemes,
-            r#","entry":""#,
-            stringify!($entry),
-            r#""}"#
-        );
-
-        #[used]
-        #[unsafe(link_section = ".saoms.transport")]
-        static METADATA: [u8; TEXT.len()] = {
-            let mut bytes = [0; TEXT.len()];
-            bytes.copy_from_slice(TEXT.as_bytes());
-            bytes
-        };
+        $crate::metadata!($entry, schemes: $schemes, carries: "");
 
         static TABLE: $crate::TransportTable = $crate::TransportTable {
             size: size_of::<$crate::TransportTable>(),
@@ -113,8 +94,37 @@ macro_rules! transport {
     };
 }
 
+/// The metadata of a library, in their section.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! metadata {
+    ($entry:ident, schemes: $schemes:literal, carries: $carries:literal) => {
+        /// The metadata.
+        const TEXT: &str = concat!(
+            r#"{"saoms":"transport","abi":1,"package":""#,
+            env!("CARGO_PKG_NAME"),
+            r#"","version":""#,
+            env!("CARGO_PKG_VERSION"),
+            r#"","schemes":"#,
+            $schemes,
+            $carries,
+            r#","entry":""#,
+            stringify!($entry),
+            r#""}"#
+        );
+
+        #[used]
+        #[unsafe(link_section = ".saoms.transport")]
+        static METADATA: [u8; TEXT.len()] = {
+            let mut bytes = [0; TEXT.len()];
+            bytes.copy_from_slice(TEXT.as_bytes());
+            bytes
+        };
+    };
+}
+
 /// Runs what a function of the boundary does: nothing unwinds out of it.
-fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Failure>) -> Status {
+pub(crate) fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Failure>) -> Status {
     let (status, text) = match panic::catch_unwind(AssertUnwindSafe(code)) {
         Ok(Ok(())) => return Status::OK,
         Ok(Err(Failure { status, text })) => (status, text),
@@ -129,7 +139,7 @@ fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Failure>) -> Status {
 ///
 /// # Safety
 /// It is one that `open` made, and was not closed.
-unsafe fn session<'a, T>(session: *mut c_void) -> &'a T {
+pub(crate) unsafe fn session<'a, T>(session: *mut c_void) -> &'a T {
     // SAFETY: as the caller promises.
     unsafe { &*session.cast::<T>() }
 }
@@ -161,9 +171,22 @@ pub unsafe extern "C" fn open<T: Transport>(
 /// # Safety
 /// As for [`open`].
 pub unsafe extern "C" fn judge<T: Transport>(settings: Bytes, faults: Sink) -> Status {
+    // SAFETY: as the caller promises.
+    unsafe { judged(settings, faults, T::judge) }
+}
+
+/// Looks at settings, and puts what cannot be used into a sink.
+///
+/// # Safety
+/// The text is lent, and the sink is that of the call.
+pub(crate) unsafe fn judged(
+    settings: Bytes,
+    faults: Sink,
+    judge: impl FnOnce(&str) -> Result<Vec<(&'static str, String)>, Failure>,
+) -> Status {
     guarded(faults, || {
-        // SAFETY: the program lends the text for the time of the call.
-        let found = T::judge(unsafe { settings.get_text() }.map_err(Failure::failed)?)?;
+        // SAFETY: as the caller promises.
+        let found = judge(unsafe { settings.get_text() }.map_err(Failure::failed)?)?;
         let found = found.into_iter().map(|(setting, text)| serde_json::json!({"setting": setting, "text": text}));
         let found: serde_json::Value = found.collect::<Vec<_>>().into();
         // SAFETY: the program waits for the call that it gave this sink to.
@@ -215,8 +238,17 @@ pub unsafe extern "C" fn unsubscribe<T: Transport>(of: *mut c_void, token: u64, 
 /// # Safety
 /// As for [`open`].
 pub unsafe extern "C" fn close<T: Transport>(session: *mut c_void) {
+    // SAFETY: as the caller promises.
+    unsafe { closed(session, T::close) };
+}
+
+/// Closes a session.
+///
+/// # Safety
+/// As for [`open`].
+pub(crate) unsafe fn closed<T>(session: *mut c_void, close: impl FnOnce(T)) {
     // SAFETY: by the rules of the boundary, the session was made by `open` and is used by nobody any more.
     let session = unsafe { Box::from_raw(session.cast::<T>()) };
     // What it says when it panics is on standard error already.
-    let _ = panic::catch_unwind(AssertUnwindSafe(|| session.close()));
+    let _ = panic::catch_unwind(AssertUnwindSafe(|| close(*session)));
 }

@@ -81,6 +81,7 @@ fn layout() -> String {
         StopView { size, state, stop, heartbeat, release }
         TransportTable { size, version, metadata, open, judge, put, subscribe, unsubscribe, close }
         TransportEvents { size, state, deliver, link }
+        TopicTransportTable { size, version, metadata, open, judge, advertise, publish, subscribe, close }
         RuleTable { size, state, check }
         FleetList { components, component_count, missing, missing_count }
         TextList { texts, count }
@@ -92,6 +93,7 @@ fn layout() -> String {
         ("Entry", type_name::<EntryPoint>()),
         ("Construct", type_name::<Construct>()),
         ("TransportEntry", type_name::<TransportEntry>()),
+        ("TopicTransportEntry", type_name::<TopicTransportEntry>()),
         ("LoopVisitor", type_name::<LoopVisitor>()),
         ("PublisherVisitor", type_name::<PublisherVisitor>()),
     ];

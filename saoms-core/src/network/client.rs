@@ -18,7 +18,8 @@ use saoms_api::host::contain::contained;
 use super::fleet::{Fleet, Membership};
 use super::key;
 use super::port::{AtOnce, Port};
-use super::transport::{Delivered, TransportSession};
+use super::topics::{TopicFleet, TopicMember, TopicMembership};
+use super::transport::{Delivered, TopicSession, TransportSession};
 pub use enter::{Entered, Entrance, Entry, Refused};
 use member::{Linger, Member};
 
@@ -60,12 +61,9 @@ impl Client {
     pub fn prepare(entered: Entered, membership: Membership, fleet: impl Fleet) -> Result<Client, String> {
         let Entered { session, port, settings } = entered;
         let member = Arc::new(Mutex::new(Member::new(session, &port, settings, membership, fleet)));
-        let (gate, is_open) = channel();
         let own = Arc::clone(&port);
-        let thread = std::thread::Builder::new().name("saoms-network".to_owned());
-        let begin = move || {
-            if is_open.recv().is_err() {
-                // The program does not begin: it leaves without a word.
+        Client::with(port, move |begins| {
+            if !begins {
                 own.end();
                 let session = lock(&member).take_session();
                 return drop(session);
@@ -76,8 +74,40 @@ impl Client {
             if let Err(failure) = ended {
                 break_down(&member, &own, &failure);
             }
-        };
-        let thread = thread.spawn(begin).map_err(|error| error.to_string())?;
+        })
+    }
+
+    /// Prepares to take part in a network of programs that do not speak our language, which delivers to the port.
+    ///
+    /// # Errors
+    /// The system refuses a thread: why.
+    pub fn prepare_topics(
+        session: TopicSession,
+        port: &Arc<Port>,
+        membership: TopicMembership,
+        fleet: impl TopicFleet,
+    ) -> Result<Client, String> {
+        let own = Arc::clone(port);
+        let mut member = TopicMember::new(session, membership, fleet);
+        Client::with(Arc::clone(port), move |begins| {
+            if !begins {
+                return own.end();
+            }
+            let Err(failure) = contained(|| member.run(&own)) else { return };
+            own.end();
+            let text = member.break_down(&failure.to_string());
+            while !member.has_started() && !own.is_closed() {
+                sleep(START_LOOK);
+            }
+            member.fail(text);
+        })
+    }
+
+    /// A client whose thread does this: with false where the program does not begin, and leaves without a word.
+    fn with(port: Arc<Port>, run: impl FnOnce(bool) + Send + 'static) -> Result<Client, String> {
+        let (gate, is_open) = channel();
+        let thread = std::thread::Builder::new().name("saoms-network".to_owned());
+        let thread = thread.spawn(move || run(is_open.recv().is_ok())).map_err(|error| error.to_string())?;
         Ok(Client { port, gate: Some(gate), thread: Some(thread) })
     }
 

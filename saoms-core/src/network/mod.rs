@@ -13,13 +13,17 @@ mod port;
 pub mod rights;
 mod ticket;
 mod told;
+mod topics;
 pub mod transport;
 
 /// The component that messages come from which no component of the fleet sends. A program adds its number.
 pub(crate) const FROM_OUTSIDE: &str = "(outside)";
+/// The kind of alerts of links.
+const LINK: &str = "link";
 
 pub use client::{Client, Entered, Entrance, Entry, Refused};
 pub use fleet::{Fleet, Membership, Undelivered};
 pub(crate) use port::FromRun;
 pub use port::Port;
 pub(crate) use ticket::Ticket;
+pub use topics::{TopicFleet, TopicMembership};

@@ -48,6 +48,8 @@ pub(crate) enum FromRun {
     },
     /// So many events of a topic found no room, and are lost; the last one had this number in the state folder.
     Skipped { topic: Arc<str>, count: u64, last: Option<u64> },
+    /// Components publish a topic; of networks of other programs alone.
+    Publishes { topic: Arc<str> },
     /// Components read a topic.
     Reads { topic: Arc<str>, is_state: bool, schema: u64 },
     /// They read these cells of it alone; `None`: all of it.
@@ -202,7 +204,7 @@ impl Waiting {
     fn has_room_for(&self, from_run: &FromRun) -> bool {
         let has_room = self.from_run.len() < MOST_MESSAGES;
         match from_run {
-            FromRun::Reads { .. } => true,
+            FromRun::Publishes { .. } | FromRun::Reads { .. } => true,
             FromRun::Message { .. } => {
                 let bytes = self.message_bytes + size(from_run);
                 has_room && self.beyond.is_empty() && (bytes <= MOST_MESSAGE_BYTES || self.message_bytes == 0)
@@ -285,7 +287,7 @@ impl Port {
                 }
                 // Nobody takes it any more, or who asks gives up, and can ask again.
                 FromRun::Message { .. } | FromRun::Skipped { .. } | FromRun::Answer { .. } => {}
-                FromRun::Reads { .. } | FromRun::Wants { .. } => {}
+                FromRun::Publishes { .. } | FromRun::Reads { .. } | FromRun::Wants { .. } => {}
             }
         }
     }

@@ -216,6 +216,7 @@ codes! {
     UNPROTECTED_NETWORK = "S4029" Warning "unprotected-network" [OutlivesExpansion]: "Messages leave this machine without protection: everybody in the network can read and change them.";
     PEER_MISSING = "S4030" Error "peer-missing": "A `url` of peers does not name a node that has a component on this network.";
     NO_TRANSPORT = "S4031" Error "no-transport": "There is no transport for a `url`: its scheme is unknown, or the library of the transport is missing. Reported by `saoms run`.";
+    NODES_OVER_TOPICS = "S4032" Error "nodes-over-topics": "Components of several nodes are on a network that carries topics of other programs alone: nodes need a network of their own.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

@@ -17,8 +17,10 @@ use saoms_api::host::format_duration;
 use saoms_core::network::exchange::Settings;
 use saoms_core::network::exchange::wire::LARGEST_NUMBER;
 use saoms_core::network::rights::Granted;
-use saoms_core::network::transport::{Opened, SessionSettings, Transport, TransportError, TransportSession, peers};
-use saoms_core::network::{Client, Entrance, Entry, Membership, Port, Refused as Occupied};
+use saoms_core::network::transport::{
+    Carrier, Opened, Receiver, SessionSettings, TopicSession, TransportError, TransportSession, peers,
+};
+use saoms_core::network::{Client, Entrance, Entry, Membership, Port, Refused as Occupied, TopicMembership};
 use saoms_core::schedule::{Handle, StartError};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Diagnostic;
@@ -71,7 +73,7 @@ pub(super) struct Networks {
 
 #[derive(Debug)]
 struct Network {
-    transport: Transport,
+    transport: Carrier,
     /// The components on it.
     components: BTreeSet<String>,
     /// The one that is its router here.
@@ -136,8 +138,11 @@ impl Networks {
                     resolver.unnamed(&described, &named);
                 }
             }
-            match Transport::find(&url, &arguments.fleet.plugins.plugins) {
+            match Carrier::find(&url, &arguments.fleet.plugins.plugins) {
                 Ok(transport) => {
+                    if matches!(transport, Carrier::Topics(_)) {
+                        resolver.needs_more(&url, &described, !others(assembly, &url).is_empty());
+                    }
                     let settings = resolver.settings(&url, &described);
                     if resolver.faults.is_empty() {
                         resolver.judge(transport, &settings, &described);
@@ -187,21 +192,35 @@ impl Networks {
         // Of two programs that begin at once, the same one begins on each of their networks, as the later one.
         let program = RandomState::new().hash_one(std::process::id()) & !NETWORK_BITS;
         let date = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-        let mut asking = Asking { entrance: Entrance::default(), handle, wait: &wait, node: self.node.as_deref() };
-        let mut parts = Vec::new();
+        let entrance = Entrance::default();
+        let mut asking =
+            Asking { entrance, places: Vec::new(), handle, wait: &wait, node: self.node.as_deref(), all: &self.all };
+        let (mut parts, mut clients) = (Vec::new(), Vec::new());
         for (number, network) in self.all.iter().enumerate() {
             let Network { transport, components, others, settings, membership, .. } = network;
             let port: Arc<Port> = Arc::default();
             let who = network.who();
-            let Some((session, has_waited)) = asking.open(&self.all, &who, *transport, &port)? else {
-                return Ok(Vec::new());
-            };
             let hooks = Hooks {
                 fleet: handle.clone(),
                 lost_link: self.lost_link,
                 ending: signals.ending(),
                 door: Arc::clone(door),
             };
+            let transport = match *transport {
+                Carrier::Messages(transport) => transport,
+                Carrier::Topics(transport) => {
+                    let open = |receiver| TopicSession::open(transport, settings, receiver);
+                    let Some((session, _)) = asking.open(&who, &port, &open)? else { return Ok(Vec::new()) };
+                    let fleet = handle.use_topics(&settings.url, &port, hooks);
+                    let (url, listens) = (settings.url.clone(), settings.listen);
+                    let membership = TopicMembership { url, listens, patience: self.patience };
+                    let client = Client::prepare_topics(session, &port, membership, fleet);
+                    clients.push(client.map_err(|error| who.error(&error))?);
+                    continue;
+                }
+            };
+            let open = |receiver| TransportSession::open(transport, settings, receiver);
+            let Some((session, has_waited)) = asking.open(&who, &port, &open)? else { return Ok(Vec::new()) };
             let fleet = handle.use_network(&settings.url, &port, hooks);
             let program = program | (number as u64 & NETWORK_BITS);
             let memory = fleet.recall(program);
@@ -221,19 +240,19 @@ impl Networks {
             let is_fresh = has_waited || !membership.peers.is_empty();
             let added = asking.entrance.add(session, &port, member, membership, is_fresh, Instant::now());
             added.map_err(|error| who.error(&error))?;
-            parts.push((who, fleet));
+            asking.places.push(number);
+            parts.push((who, fleet, membership));
         }
-        while asking.look(&self.all)? != Entry::Free {
+        while asking.look()? != Entry::Free {
             if signals.has_come() {
                 return Ok(Vec::new());
             }
             sleep(LOOK);
         }
-        let all = asking.entrance.into_all().into_iter().zip(parts).zip(&self.all);
-        let clients = all.map(|((entered, (who, fleet)), network)| {
-            Client::prepare(entered, network.membership.clone(), fleet).map_err(|error| who.error(&error))
-        });
-        let mut clients = clients.collect::<Result<Vec<Client>, StartError>>()?;
+        for (entered, (who, fleet, membership)) in asking.entrance.into_all().into_iter().zip(parts) {
+            let client = Client::prepare(entered, membership.clone(), fleet);
+            clients.push(client.map_err(|error| who.error(&error))?);
+        }
         clients.iter_mut().for_each(Client::begin);
         Ok(clients)
     }
@@ -242,6 +261,9 @@ impl Networks {
 /// A program that asks on networks whether it may begin.
 struct Asking<'a> {
     entrance: Entrance,
+    /// The places of those networks among all.
+    places: Vec<usize>,
+    all: &'a [Network],
     handle: &'a Handle,
     wait: &'a Wait<'a>,
     /// The node of the program.
@@ -250,15 +272,16 @@ struct Asking<'a> {
 
 impl Asking<'_> {
     /// Whether the program may begin on the networks that it has joined, which are the first of all.
-    fn look(&mut self, all: &[Network]) -> Result<Entry, StartError> {
+    fn look(&mut self) -> Result<Entry, StartError> {
+        let network = |place: usize| self.all.get(*self.places.get(place)?);
         let tell = |text: String| self.handle.note(Level::Warning, text);
         let entry = self.entrance.look(Instant::now(), self.wait.shortest(), tell);
         let entry = entry.map_err(|Occupied { place, why }| StartError::Network {
-            url: all.get(place).map(|network| network.settings.url.clone()).unwrap_or_default(),
+            url: network(place).map(|network| network.settings.url.clone()).unwrap_or_default(),
             error: in_node(&why, self.node),
         })?;
         match entry {
-            Entry::Lost(place) => match all.get(place) {
+            Entry::Lost(place) => match network(place) {
                 Some(network) => Err(network.who().gone(self.wait)),
                 None => Ok(Entry::Open),
             },
@@ -268,25 +291,24 @@ impl Asking<'_> {
 
     /// A session of a network, and whether it was waited for; `None` if the end was asked for before it was there.
     /// Meanwhile others on the networks before it are answered.
-    fn open(
+    fn open<S: Send>(
         &mut self,
-        all: &[Network],
         who: &Who<'_>,
-        transport: Transport,
         port: &Arc<Port>,
-    ) -> Result<Option<(TransportSession, bool)>, StartError> {
+        open: Open<'_, S>,
+    ) -> Result<Option<(S, bool)>, StartError> {
         let (handle, given, is_refused) = (self.handle, self.wait, AtomicBool::new(false));
         let is_over = || is_refused.load(Ordering::Relaxed) || (given.is_over)();
         let wait = Wait { is_over: &is_over, ..*given };
         thread::scope(|scope| {
             let name = "saoms-network".to_owned();
             let opening =
-                thread::Builder::new().name(name).spawn_scoped(scope, || who.opened(transport, port, handle, &wait));
+                thread::Builder::new().name(name).spawn_scoped(scope, || who.opened(open, port, handle, &wait));
             let opening = opening.map_err(|error| who.error(&format!("the system cannot create a thread: {error}")))?;
             let mut refused = None;
             while !opening.is_finished() {
                 if refused.is_none() {
-                    refused = self.look(all).err();
+                    refused = self.look().err();
                     is_refused.store(refused.is_some(), Ordering::Relaxed);
                 }
                 sleep(LOOK);
@@ -313,6 +335,9 @@ impl Wait<'_> {
         self.longest.into_iter().chain(self.limit).min()
     }
 }
+
+/// Opens a session that delivers to a receiver.
+type Open<'o, S> = &'o (dyn Fn(Arc<dyn Receiver>) -> Result<Opened<S>, String> + Sync);
 
 /// Who joins a network.
 struct Who<'a> {
@@ -365,18 +390,18 @@ impl Who<'_> {
     }
 
     /// A session of the network, and whether it was waited for; `None` if the end was asked for before it was there.
-    fn opened(
+    fn opened<S>(
         &self,
-        transport: Transport,
+        open: Open<'_, S>,
         port: &Arc<Port>,
         handle: &Handle,
         wait: &Wait<'_>,
-    ) -> Result<Option<(TransportSession, bool)>, StartError> {
+    ) -> Result<Option<(S, bool)>, StartError> {
         let url = &self.settings.url;
         let since = Instant::now();
         let mut told: Vec<String> = Vec::new();
         loop {
-            let why = match TransportSession::open(transport, self.settings, Arc::clone(port) as Arc<_>) {
+            let why = match open(Arc::clone(port) as Arc<_>) {
                 Ok(Opened::Session(session)) => {
                     // Who joins says so once it hears all that its components read.
                     if self.settings.listen {

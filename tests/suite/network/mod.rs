@@ -31,6 +31,7 @@ mod sockets;
 mod state;
 mod tls;
 mod together;
+mod topics;
 mod twice;
 mod versions;
 

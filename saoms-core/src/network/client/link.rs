@@ -3,10 +3,7 @@
 use saoms_api::Level;
 
 use super::member::Member;
-use crate::network::Fleet;
-
-/// The kind of alerts of links.
-const LINK: &str = "link";
+use crate::network::{Fleet, LINK};
 
 /// Time after which a program says that none of its peers is there, in nanoseconds: those that are connect in it.
 const ALONE: u64 = 2_000_000_000;

@@ -378,6 +378,8 @@ impl<F: Fleet> Member<F> {
                 }
                 self.exchange.read(&topic, is_state, schema);
             }
+            // Who reads says so.
+            FromRun::Publishes { .. } => {}
             FromRun::Skipped { topic, count, last } => self.exchange.skip(&topic, count, last),
             FromRun::Wants { topic, cells } => self.exchange.want(&topic, cells.as_ref(), self.now()),
             FromRun::Call { call, ticket } => {

@@ -5,8 +5,13 @@ use crate::plugin::PluginError;
 
 /// The transports that ship: their packages, with the schemes for which people look for them. Where a scheme is none of
 /// these, the first one is what is likely meant.
-const SHIPPED: [(&str, [&str; 2]); 3] =
-    [("saoms-zenoh", ["", "tls"]), ("saoms-mqtt", ["mqtt", "mqtts"]), ("saoms-stomp", ["stomp", "stomp+ssl"])];
+const SHIPPED: [(&str, &[&str]); 5] = [
+    ("saoms-zenoh", &["", "tls"]),
+    ("saoms-mqtt", &["mqtt", "mqtts"]),
+    ("saoms-stomp", &["stomp", "stomp+ssl"]),
+    ("saoms-ros2", &["ros2"]),
+    ("saoms-rosbridge", &["rosbridge"]),
+];
 
 /// A scheme as people write it.
 pub(super) fn shown(scheme: &str) -> String {
@@ -23,6 +28,8 @@ pub enum TransportError {
     Library(PluginError),
     /// Its metadata are not what they should be.
     Metadata { path: PathBuf, message: String },
+    /// It carries the topics of programs that do not speak our language.
+    Topics { scheme: String },
     /// It was built for another version of the boundary.
     Version { path: PathBuf, found: u32, expected: u32 },
 }
@@ -39,14 +46,14 @@ impl fmt::Display for TransportError {
                     write!(out, "; those that were found serve {}", known.join(", "))?;
                 }
                 let meant = SHIPPED.iter().find(|(_, serves)| serves.contains(&scheme.as_str()));
-                let (package, [one, other]) = meant.unwrap_or(&SHIPPED[0]);
+                let (package, serves) = meant.unwrap_or(&SHIPPED[0]);
+                let serves: Vec<String> = serves.iter().map(|scheme| shown(scheme)).collect();
                 let folders: Vec<String> = searched.iter().map(|path| format!("`{}`", path.display())).collect();
                 write!(
                     out,
-                    ": `cargo build --release -p {package}` makes the one for {} and {}, `lib{}.so`, in \
+                    ": `cargo build --release -p {package}` makes the one for {}, `lib{}.so`, in \
                      `target/release`",
-                    shown(one),
-                    shown(other),
+                    serves.join(" and "),
                     package.replace('-', "_")
                 )?;
                 if let Some(installed) = installed {
@@ -55,6 +62,9 @@ impl fmt::Display for TransportError {
                 write!(out, "; searched in {}", folders.join(", "))
             }
             TransportError::Library(error) => error.fmt(out),
+            TransportError::Topics { scheme } => {
+                write!(out, "urls with `{scheme}://` lead to topics of other programs, which know no operators")
+            }
             TransportError::Metadata { path, message } => {
                 write!(out, "transport `{}` has metadata that cannot be read: {message}", path.display())
             }

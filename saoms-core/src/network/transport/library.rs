@@ -1,12 +1,16 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use saoms_abi::{TRANSPORT_SECTION, TRANSPORT_VERSION, TransportTable};
+use saoms_abi::{TRANSPORT_SECTION, TRANSPORT_VERSION, TopicTransportTable, TransportTable};
 use serde::Deserialize;
 
-use super::TransportError;
 use super::error::shown;
+use super::session::judge;
+use super::{SessionSettings, SettingFault, TransportError};
 use crate::plugin::{PluginError, beside_the_program, libraries, load_table, read_section};
+
+/// What a transport carries that is not for what our programs say to each other.
+const TOPICS: &str = "topics";
 
 /// What the metadata of a transport say.
 #[derive(Clone, Debug, Deserialize)]
@@ -19,6 +23,9 @@ pub struct TransportInfo {
     pub version: String,
     /// The schemes of the urls that it serves; an empty one is `host:port`.
     pub schemes: Vec<String>,
+    /// `topics` where it carries the topics of programs that do not speak our language.
+    #[serde(default)]
+    carries: Option<String>,
     entry: String,
 }
 
@@ -26,6 +33,21 @@ pub struct TransportInfo {
 #[derive(Clone, Copy, Debug)]
 pub struct Transport {
     pub(super) table: &'static TransportTable,
+}
+
+/// A transport that is loaded, of topics of programs that do not speak our language.
+#[derive(Clone, Copy, Debug)]
+pub struct TopicTransport {
+    pub(super) table: &'static TopicTransportTable,
+}
+
+/// What serves a url.
+#[derive(Clone, Copy, Debug)]
+pub enum Carrier {
+    /// A transport for what our programs say to each other.
+    Messages(Transport),
+    /// A transport of topics of other programs.
+    Topics(TopicTransport),
 }
 
 /// The scheme of a url; empty for `host:port`.
@@ -46,12 +68,39 @@ impl Transport {
         Transport { table }
     }
 
+    /// The transport for a url, as [`Carrier::find`] finds it.
+    ///
+    /// # Errors
+    /// There is none, it cannot be loaded, or it carries the topics of other programs.
+    pub fn find(url: &str, named: &[PathBuf]) -> Result<Transport, TransportError> {
+        match Carrier::find(url, named)? {
+            Carrier::Messages(transport) => Ok(transport),
+            Carrier::Topics(_) => Err(TransportError::Topics { scheme: scheme(url).to_owned() }),
+        }
+    }
+
+    /// The urls that the libraries beside the program serve, as messages show them. What cannot be used serves none.
+    pub fn served_beside_the_program() -> BTreeSet<String> {
+        let libraries = beside_the_program().into_iter().flat_map(|place| libraries_at(&place));
+        let infos = libraries.filter_map(|path| TransportInfo::read(&path).ok().flatten());
+        infos.flat_map(|info| info.shown_schemes()).collect()
+    }
+}
+
+impl TopicTransport {
+    #[cfg(test)]
+    pub(in crate::network) fn of(table: &'static TopicTransportTable) -> TopicTransport {
+        TopicTransport { table }
+    }
+}
+
+impl Carrier {
     /// The transport for a url: from the places that the user named (libraries or folders), then from where libraries
     /// lie beside the program.
     ///
     /// # Errors
     /// There is none, or it cannot be loaded.
-    pub fn find(url: &str, named: &[PathBuf]) -> Result<Transport, TransportError> {
+    pub fn find(url: &str, named: &[PathBuf]) -> Result<Carrier, TransportError> {
         let scheme = scheme(url);
         let searched: Vec<PathBuf> = named.iter().cloned().chain(beside_the_program()).collect();
         let mut known = BTreeSet::new();
@@ -62,7 +111,7 @@ impl Transport {
                 Err(error) => return Err(error),
             };
             if info.schemes.iter().any(|one| one == scheme) {
-                return Transport::load(&path, &info);
+                return Carrier::load(&path, &info);
             }
             known.extend(info.shown_schemes());
         }
@@ -70,27 +119,45 @@ impl Transport {
         Err(TransportError::Missing { scheme, searched, known, installed: beside_the_program().pop() })
     }
 
-    /// The urls that the libraries beside the program serve, as messages show them. What cannot be used serves none.
-    pub fn served_beside_the_program() -> BTreeSet<String> {
-        let libraries = beside_the_program().into_iter().flat_map(|place| libraries_at(&place));
-        let infos = libraries.filter_map(|path| TransportInfo::read(&path).ok().flatten());
-        infos.flat_map(|info| info.shown_schemes()).collect()
+    fn load(path: &Path, info: &TransportInfo) -> Result<Carrier, TransportError> {
+        if info.carries.is_some() {
+            let (version, size) =
+                (|table: &TopicTransportTable| table.version, |table: &TopicTransportTable| table.size);
+            let table = loaded::<TopicTransportTable>(path, info, version, size)?;
+            return Ok(Carrier::Topics(TopicTransport { table }));
+        }
+        let table = loaded::<TransportTable>(path, info, |table| table.version, |table| table.size)?;
+        Ok(Carrier::Messages(Transport { table }))
     }
 
-    fn load(path: &Path, info: &TransportInfo) -> Result<Transport, TransportError> {
-        let loaded = load_table::<TransportTable>(path, &info.package, &info.entry, TRANSPORT_VERSION);
-        let (_, table) = loaded.map_err(TransportError::Library)?;
-        let unloadable = |message: &str| {
-            let (path, package) = (path.to_owned(), info.package.clone());
-            TransportError::Library(PluginError::Unloadable { path, package, message: message.to_owned() })
-        };
-        // SAFETY: by the rules of the boundary the table is null or constant.
-        let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it returns no table"))?;
-        if table.version != TRANSPORT_VERSION || table.size < size_of::<TransportTable>() {
-            return Err(unloadable("its code and its metadata are not from the same build"));
+    /// Looks at settings without joining the network: what cannot be used, and why.
+    pub fn judge(self, settings: &SessionSettings) -> Vec<SettingFault> {
+        match self {
+            Carrier::Messages(transport) => transport.judge(settings),
+            Carrier::Topics(transport) => judge(transport.table.judge, settings),
         }
-        Ok(Transport { table })
     }
+}
+
+/// The table of a library, if it is of this version.
+fn loaded<T>(
+    path: &Path,
+    info: &TransportInfo,
+    version: impl Fn(&T) -> u32,
+    size: impl Fn(&T) -> usize,
+) -> Result<&'static T, TransportError> {
+    let loaded = load_table::<T>(path, &info.package, &info.entry, TRANSPORT_VERSION);
+    let (_, table) = loaded.map_err(TransportError::Library)?;
+    let unloadable = |message: &str| {
+        let (path, package) = (path.to_owned(), info.package.clone());
+        TransportError::Library(PluginError::Unloadable { path, package, message: message.to_owned() })
+    };
+    // SAFETY: by the rules of the boundary the table is null or constant.
+    let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it returns no table"))?;
+    if version(table) != TRANSPORT_VERSION || size(table) < size_of::<T>() {
+        return Err(unloadable("its code and its metadata are not from the same build"));
+    }
+    Ok(table)
 }
 
 impl TransportInfo {
@@ -121,7 +188,11 @@ impl TransportInfo {
             let (path, found, expected) = (path.to_owned(), head.abi, TRANSPORT_VERSION);
             return Err(TransportError::Version { path, found, expected });
         }
-        serde_json::from_str(&text).map(Some).map_err(|error| malformed(error.to_string()))
+        let info: TransportInfo = serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))?;
+        match info.carries.as_deref().filter(|carries| *carries != TOPICS) {
+            Some(found) => Err(malformed(format!("found `{found}` for `carries`, expected `{TOPICS}`"))),
+            None => Ok(Some(info)),
+        }
     }
 }
 

@@ -3,9 +3,11 @@
 mod error;
 mod library;
 mod session;
+mod topics;
 
 pub use error::TransportError;
-pub use library::{Transport, TransportInfo, peers, scheme};
+pub use library::{Carrier, TopicTransport, Transport, TransportInfo, peers, scheme};
 pub use session::{
     Account, Delivered, Opened, Receiver, SessionSettings, SettingFault, TlsFiles, TransportSession, UserKeys,
 };
+pub use topics::{TopicForm, TopicSession};

@@ -97,9 +97,9 @@ pub trait Receiver: Send + Sync + 'static {
 
 /// The outcome of an attempt to open a session that did not fail for good.
 #[derive(Debug)]
-pub enum Opened {
+pub enum Opened<S = TransportSession> {
     /// The session.
-    Session(TransportSession),
+    Session(S),
     /// Nobody answers there now: why.
     Unreachable(String),
 }
@@ -116,25 +116,35 @@ pub struct SettingFault {
 impl Transport {
     /// Looks at settings without joining the network: what cannot be used, and why.
     pub fn judge(self, settings: &SessionSettings) -> Vec<SettingFault> {
-        let text = serde_json::to_string(settings).unwrap_or_default();
-        // SAFETY: the table is of this version, and the text lives until the call returns.
-        let (status, faults) = called(|faults| unsafe { (self.table.judge)(Bytes::text(&text), faults) });
-        let whole = |text: &str| vec![SettingFault { setting: "url".to_owned(), text: text.to_owned() }];
-        match status {
-            Status::OK if faults.is_empty() => Vec::new(),
-            Status::OK => serde_json::from_str(&faults)
-                .unwrap_or_else(|error| whole(&format!("its transport answers what is not JSON: {error}"))),
-            _ => whole(&faults),
-        }
+        judge(self.table.judge, settings)
     }
 }
 
-/// A session of a transport. Dropping it closes it.
+/// The function of a table that looks at settings.
+type Judge = unsafe extern "C" fn(Bytes, Sink) -> Status;
+
+/// What cannot be used of settings, and why.
+pub(super) fn judge(judge: Judge, settings: &SessionSettings) -> Vec<SettingFault> {
+    let text = serde_json::to_string(settings).unwrap_or_default();
+    // SAFETY: the table is of this version, and the text lives until the call returns.
+    let (status, faults) = called(|faults| unsafe { judge(Bytes::text(&text), faults) });
+    let whole = |text: &str| vec![SettingFault { setting: "url".to_owned(), text: text.to_owned() }];
+    match status {
+        Status::OK if faults.is_empty() => Vec::new(),
+        Status::OK => serde_json::from_str(&faults)
+            .unwrap_or_else(|error| whole(&format!("its transport answers what is not JSON: {error}"))),
+        _ => whole(&faults),
+    }
+}
+
+/// The function of a table that opens a session.
+type Open = unsafe extern "C" fn(Bytes, *const TransportEvents, *mut *mut c_void, Sink) -> Status;
+
+/// A session of a library. Dropping it closes it.
 #[derive(Debug)]
-pub struct TransportSession {
-    table: &'static TransportTable,
-    session: *mut c_void,
-    is_router: bool,
+pub(super) struct OpenSession {
+    pub(super) session: *mut c_void,
+    close: unsafe extern "C" fn(*mut c_void),
     /// What the session calls, until it is closed.
     state: *const EventState,
 }
@@ -144,9 +154,57 @@ struct EventState {
 }
 
 // SAFETY: by the rules of the boundary a session is used from any thread.
-unsafe impl Send for TransportSession {}
+unsafe impl Send for OpenSession {}
 // SAFETY: the same; several functions may run at once.
-unsafe impl Sync for TransportSession {}
+unsafe impl Sync for OpenSession {}
+
+impl OpenSession {
+    /// Opens a session by the functions of a table.
+    pub(super) fn open(
+        (open, close): (Open, unsafe extern "C" fn(*mut c_void)),
+        settings: &SessionSettings,
+        receiver: Arc<dyn Receiver>,
+    ) -> Result<Opened<OpenSession>, String> {
+        let text = serde_json::to_string(settings).map_err(|error| error.to_string())?;
+        let state: *const EventState = Box::into_raw(Box::new(EventState { receiver }));
+        let events =
+            TransportEvents { size: size_of::<TransportEvents>(), state: state.cast_mut().cast(), deliver, link };
+        let mut session = ptr::null_mut();
+        let (status, error) = called(|error| {
+            // SAFETY: the table is of this version; all that is lent lives until the call returns, the state until the
+            // session is closed.
+            unsafe { open(Bytes::text(&text), &raw const events, &raw mut session, error) }
+        });
+        if status == Status::OK && !session.is_null() {
+            return Ok(Opened::Session(OpenSession { session, close, state }));
+        }
+        // SAFETY: there is no session that would call anything with it.
+        drop(unsafe { Box::from_raw(state.cast_mut()) });
+        match status {
+            Status::UNREACHABLE => Ok(Opened::Unreachable(error)),
+            Status::OK => Err("it gave no session".to_owned()),
+            _ => Err(error),
+        }
+    }
+}
+
+impl Drop for OpenSession {
+    fn drop(&mut self) {
+        // SAFETY: nobody else has the session any more. When the call returns, nobody calls anything with the state.
+        unsafe {
+            (self.close)(self.session);
+            drop(Box::from_raw(self.state.cast_mut()));
+        }
+    }
+}
+
+/// A session of a transport. Dropping it closes it.
+#[derive(Debug)]
+pub struct TransportSession {
+    table: &'static TransportTable,
+    open: OpenSession,
+    is_router: bool,
+}
 
 impl TransportSession {
     /// Opens a session.
@@ -158,27 +216,11 @@ impl TransportSession {
         settings: &SessionSettings,
         receiver: Arc<dyn Receiver>,
     ) -> Result<Opened, String> {
-        let text = serde_json::to_string(settings).map_err(|error| error.to_string())?;
-        let state: *const EventState = Box::into_raw(Box::new(EventState { receiver }));
-        let events =
-            TransportEvents { size: size_of::<TransportEvents>(), state: state.cast_mut().cast(), deliver, link };
-        let mut session = ptr::null_mut();
         let table = transport.table;
-        let (status, error) = called(|error| {
-            // SAFETY: the table is of this version; all that is lent lives until the call returns, the state until the
-            // session is closed.
-            unsafe { (table.open)(Bytes::text(&text), &raw const events, &raw mut session, error) }
-        });
-        if status == Status::OK && !session.is_null() {
-            return Ok(Opened::Session(TransportSession { table, session, is_router: settings.listen, state }));
-        }
-        // SAFETY: there is no session that would call anything with it.
-        drop(unsafe { Box::from_raw(state.cast_mut()) });
-        match status {
-            Status::UNREACHABLE => Ok(Opened::Unreachable(error)),
-            Status::OK => Err("it gave no session".to_owned()),
-            _ => Err(error),
-        }
+        Ok(match OpenSession::open((table.open, table.close), settings, receiver)? {
+            Opened::Session(open) => Opened::Session(TransportSession { table, open, is_router: settings.listen }),
+            Opened::Unreachable(why) => Opened::Unreachable(why),
+        })
     }
 
     /// True for the router of its network.
@@ -194,7 +236,7 @@ impl TransportSession {
         let (status, error) = called(|error| {
             let (key, message, attachment) = (Bytes::text(key), Bytes::lend(message), Bytes::lend(attachment));
             // SAFETY: the session is open, and the bytes live until the call returns.
-            unsafe { (self.table.put)(self.session, key, message, attachment, u32::from(is_urgent), error) }
+            unsafe { (self.table.put)(self.open.session, key, message, attachment, u32::from(is_urgent), error) }
         });
         match status {
             Status::OK => Ok(true),
@@ -209,7 +251,7 @@ impl TransportSession {
     /// The transport refuses.
     pub fn subscribe(&self, keys: &str, token: u64) -> Result<(), String> {
         // SAFETY: the session is open, and the text lives until the call returns.
-        done(called(|error| unsafe { (self.table.subscribe)(self.session, Bytes::text(keys), token, error) }))
+        done(called(|error| unsafe { (self.table.subscribe)(self.open.session, Bytes::text(keys), token, error) }))
     }
 
     /// Ends a subscription.
@@ -218,22 +260,12 @@ impl TransportSession {
     /// The transport cannot.
     pub fn unsubscribe(&self, token: u64) -> Result<(), String> {
         // SAFETY: the session is open.
-        done(called(|error| unsafe { (self.table.unsubscribe)(self.session, token, error) }))
-    }
-}
-
-impl Drop for TransportSession {
-    fn drop(&mut self) {
-        // SAFETY: nobody else has the session any more. When the call returns, nobody calls anything with the state.
-        unsafe {
-            (self.table.close)(self.session);
-            drop(Box::from_raw(self.state.cast_mut()));
-        }
+        done(called(|error| unsafe { (self.table.unsubscribe)(self.open.session, token, error) }))
     }
 }
 
 /// Calls a function of a transport, and gives what it says with its status.
-fn called(call: impl FnOnce(Sink) -> Status) -> (Status, String) {
+pub(super) fn called(call: impl FnOnce(Sink) -> Status) -> (Status, String) {
     unsafe extern "C" fn put(state: *mut c_void, bytes: Bytes) {
         // SAFETY: the state is the text below, which lives until the call returns; the callee lends the bytes.
         if let (Some(text), Ok(bytes)) = unsafe { (state.cast::<String>().as_mut(), bytes.get()) } {
@@ -245,7 +277,7 @@ fn called(call: impl FnOnce(Sink) -> Status) -> (Status, String) {
     (status, error)
 }
 
-fn done((status, error): (Status, String)) -> Result<(), String> {
+pub(super) fn done((status, error): (Status, String)) -> Result<(), String> {
     if status == Status::OK { Ok(()) } else { Err(error) }
 }
 

@@ -108,7 +108,7 @@ impl Host for ComponentHost<'_> {
         bus.observe(id, &observers);
         let network = engine.slots[self.part.index as usize].network;
         if network != NO_NETWORK {
-            engine.use_on_network(network, id);
+            engine.publish_on_network(network, id);
         }
         engine.note_publisher(self.part, id);
         drop(engine);

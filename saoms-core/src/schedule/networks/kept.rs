@@ -99,7 +99,11 @@ impl Engine {
     #[inline]
     pub(in crate::schedule) fn events_to_keep(&mut self, part: &Part) -> Vec<Change> {
         let network = self.slots[part.index as usize].network;
-        if network == NO_NETWORK || !self.keeps_events() || self.memory.is_over(self.phase) {
+        if network == NO_NETWORK
+            || self.networks.is_foreign(network)
+            || !self.keeps_events()
+            || self.memory.is_over(self.phase)
+        {
             return Vec::new();
         }
         let outbox = part.outbox.iter().filter(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event);
@@ -143,7 +147,8 @@ impl Engine {
             // The fleet goes on from before that.
             return;
         }
-        if self.bus.kind(topic) != TopicKind::Event || !self.keeps_events() {
+        let is_kept = self.bus.kind(topic) == TopicKind::Event && !self.networks.is_foreign(network);
+        if !is_kept || !self.keeps_events() {
             return self.put_on_network(network, by, topic, message, now);
         }
         let change = self.event_to_keep(network, by, topic, message);

@@ -28,7 +28,7 @@ use crate::hash::text_hash;
 use crate::network::control::{ControlRequest, Reply};
 use crate::network::exchange::wire::{Request, Vote};
 use crate::network::exchange::{Arrived, Remembered};
-use crate::network::{Fleet, FromRun, Port, Undelivered};
+use crate::network::{Fleet, FromRun, Port, TopicFleet, Undelivered};
 use crate::observe::{Notification, SentMessage};
 pub(super) use calls::interface_hash;
 use caught_up::Mark;
@@ -45,6 +45,8 @@ pub(super) struct Networks {
     all: Vec<(String, Arc<Port>)>,
     /// Of each, whether all its programs agree that no work is left.
     are_done: Vec<bool>,
+    /// Of each, whether it has topics of programs that do not speak our language.
+    are_foreign: Vec<bool>,
     /// Of each, the number of messages that were lost, and what was told of the first.
     lost: Vec<(u64, String)>,
     /// What is left there just before the engine is unlocked.
@@ -76,6 +78,11 @@ impl Networks {
     /// The url of a network.
     pub(super) fn url(&self, network: u8) -> String {
         self.all.get(usize::from(network)).map(|(url, _)| url.clone()).unwrap_or_default()
+    }
+
+    /// True if the programs of a network do not speak our language: nobody there says what was received.
+    pub(super) fn is_foreign(&self, network: u8) -> bool {
+        self.are_foreign.get(usize::from(network)).is_some_and(|is_foreign| *is_foreign)
     }
 
     /// Where messages for a network are left.
@@ -180,6 +187,15 @@ impl Engine {
         }
     }
 
+    /// A component of a network publishes a topic.
+    pub(super) fn publish_on_network(&mut self, network: u8, topic: TopicId) {
+        self.use_on_network(network, topic);
+        if self.networks.is_foreign(network) {
+            let topic = Arc::clone(self.bus.name(topic));
+            self.networks.waiting.push((network, FromRun::Publishes { topic }));
+        }
+    }
+
     /// A component of a network reads a topic.
     pub(super) fn read_from_network(&mut self, network: u8, topic: TopicId) {
         self.use_on_network(network, topic);
@@ -220,7 +236,7 @@ impl Engine {
         while self.bus.has_room(topic)
             && let Some(mut arrived) = waiting.pop_front()
         {
-            if self.bus.kind(topic) == TopicKind::Event {
+            if self.bus.kind(topic) == TopicKind::Event && !self.networks.are_foreign[network] {
                 self.note_received(network, topic, (arrived.origin, arrived.number), now);
             }
             let to = (!arrived.to.is_empty()).then(|| self.numbers.get(arrived.to.as_str()).copied());
@@ -273,13 +289,24 @@ impl Handle {
     ///
     /// `hooks` are called by the thread of the network.
     pub fn use_network(&self, url: &str, port: &Arc<Port>, hooks: impl NetworkHooks) -> NetworkedFleet {
+        self.join_network(url, port, hooks, false)
+    }
+
+    /// The same of a network of programs that do not speak our language.
+    pub fn use_topics(&self, url: &str, port: &Arc<Port>, hooks: impl NetworkHooks) -> NetworkedFleet {
+        self.join_network(url, port, hooks, true)
+    }
+
+    fn join_network(&self, url: &str, port: &Arc<Port>, hooks: impl NetworkHooks, is_foreign: bool) -> NetworkedFleet {
         let mut engine = self.shared.lock();
         let network = engine.networks.all.len();
         let date = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let date = i64::try_from(date.as_nanos()).unwrap_or(i64::MAX);
         engine.networks.epoch = date.saturating_sub_unsigned(self.shared.clock.now());
         engine.networks.all.push((url.to_owned(), Arc::clone(port)));
-        engine.networks.are_done.push(false);
+        // Nobody there is asked whether work is left.
+        engine.networks.are_done.push(is_foreign);
+        engine.networks.are_foreign.push(is_foreign);
         engine.networks.lost.push((0, String::new()));
         self.shared.release(engine);
         NetworkedFleet { shared: Arc::clone(&self.shared), network, hooks: Box::new(hooks) }
@@ -314,6 +341,35 @@ pub struct NetworkedFleet {
     shared: Arc<Shared>,
     network: usize,
     hooks: Box<dyn NetworkHooks>,
+}
+
+impl TopicFleet for NetworkedFleet {
+    fn declared(&self, topic: &str) -> Option<(String, bool)> {
+        self.shared.look(|engine| {
+            let topic = engine.bus.find(topic)?;
+            Some((engine.bus.schema(topic).to_owned(), engine.bus.kind(topic) == TopicKind::State))
+        })
+    }
+
+    fn judge(&self, topic: &str, message: &[u8]) -> Result<(), String> {
+        let mut engine = self.shared.lock();
+        let schema = engine.bus.find(topic).and_then(|topic| engine.schema_of(topic).1.clone());
+        self.shared.release(engine);
+        let schema = schema.ok_or("the fleet does not have the topic any more")?;
+        schema.check(message).map_err(|error| error.to_string())?;
+        let speakers = self.shared.speakers();
+        if speakers.are_named_on(topic) {
+            let fields = schema.decode(message).map_err(|error| error.to_string())?;
+            if let Some(speaker) = speakers.find(topic, &fields) {
+                return Err(speaker.to_string());
+            }
+        }
+        Ok(())
+    }
+
+    fn count_refused(&self, count: u64) {
+        self.shared.sections().add("topics.refused", i64::try_from(count).unwrap_or(i64::MAX));
+    }
 }
 
 impl Fleet for NetworkedFleet {

@@ -10,7 +10,7 @@ use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
 use crate::check::tasks::broker_address::{
-    encrypted, fault, host_and_port, ip, is_in_clear, is_loopback, is_plain, peers,
+    encrypted, fault, host_and_port, ip, is_in_clear, is_loopback, is_of_topics, is_plain, peers,
 };
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::source::Location;
@@ -26,6 +26,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], report: &m
     let faulty: Vec<&str> = faulty.map(|(_, router)| router.url.as_str()).collect();
     networks.protection(report);
     networks.peers(report);
+    networks.topics_alone(report);
     networks.shared_ports(report);
     networks.unserved(&faulty, report);
     networks.differences(report);
@@ -159,6 +160,34 @@ impl<'n, 'a> Networks<'n, 'a> {
                     format!("write {tls} with `tlsCa`, and let the broker listen there with TLS: see docs/brokers.md")
                 }
             }));
+        }
+    }
+
+    /// Reports networks of other programs' topics that are asked for more: to join the nodes of a fleet, or to be
+    /// protected.
+    fn topics_alone(&self, report: &mut Report<'_>) {
+        let mut first: BTreeMap<&str, usize> = BTreeMap::new();
+        for (place, url, _) in self.tasks.iter().filter(|(_, url, _)| is_of_topics(url)) {
+            let Some(other) = first.get(url) else {
+                first.insert(url, *place);
+                if !is_loopback(url) {
+                    let message = format!("messages to {} go over the network without protection", quoted(url));
+                    let one = Diagnostic::new(&codes::UNPROTECTED_NETWORK, self.at(*place, "url"), message);
+                    report.push(one.help("use it on one machine, in a network that you trust, or through a tunnel"));
+                }
+                continue;
+            };
+            if !self.are_together(*other, *place) {
+                let message = format!(
+                    "components of two nodes are on the network {}, which carries topics of other programs alone",
+                    quoted(url)
+                );
+                let one = Diagnostic::new(&codes::NODES_OVER_TOPICS, self.at(*place, "url"), message);
+                report.push(one.label(self.at(*other, "url"), "in another node").help(
+                    "programs of one fleet need a network of their own, such as `host:port`: see docs/networks.md",
+                ));
+                return;
+            }
         }
     }
 
@@ -299,7 +328,9 @@ impl<'n, 'a> Networks<'n, 'a> {
             let is_told =
                 is_plain(url) && (!is_loopback(url) || task.tls_ca.is_some() || task.tls_certificate.is_some());
             let near = self.routers.iter().map(|(_, router)| router.url.as_str()).find(|router| collide(router, url));
-            if self.is_served(url) || near.is_some_and(|near| is_told || faulty.contains(&near)) {
+            // Who listens there is no program of the fleet.
+            let is_elsewhere = is_of_topics(url) && near.is_none();
+            if is_elsewhere || self.is_served(url) || near.is_some_and(|near| is_told || faulty.contains(&near)) {
                 continue;
             }
             let message = format!("the fleet has no broker at {}", quoted(url));
@@ -409,6 +440,10 @@ fn tls_files(
                 format!("the files for TLS are not used: {} is without TLS", quoted(url)),
                 format!("name the network {}, or leave them out", quoted(&named)),
             )
+        }
+        _ if is_of_topics(url) => {
+            let message = format!("the files for TLS are not used: {} is without TLS", quoted(url));
+            (first, message, "leave them out".to_owned())
         }
         (Some(at), None) => (at, "`tlsCertificate` is given without `tlsKey`".to_owned(), both.to_owned()),
         (None, Some(at)) => (at, "`tlsKey` is given without `tlsCertificate`".to_owned(), both.to_owned()),

@@ -14,6 +14,7 @@ use crate::check::properties::findings::Renamed;
 use crate::check::report::Report;
 use crate::check::rules::similar_names::{Name, Similar};
 use crate::check::tasks::Task;
+use crate::check::tasks::broker_address::is_of_topics;
 use crate::check::tasks::topic_types::described;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
@@ -219,6 +220,11 @@ impl All<'_> {
             false => (&codes::TOPIC_UNREAD, "publishes", &topic.writers, "reads"),
         };
         let Some(end) = ends.first() else { return };
+        // Programs that are no part of the fleet are the other end.
+        let url = |end: &TopicEnd| self.assembly.components[end.component()].url();
+        if ends.iter().any(|end| url(end).is_some_and(is_of_topics)) {
+            return;
+        }
         let message =
             format!("{} topic {}, which no component {missing}", self.who_does(ends, does), quoted(&topic.name));
         let one = Diagnostic::new(code, self.at(end, topic), message);

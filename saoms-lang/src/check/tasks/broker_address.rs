@@ -26,6 +26,14 @@ pub(crate) struct AddressFault {
 const IN_CLEAR: [(&str, &str); 4] =
     [("", "tls://"), ("peers://", "peers+tls://"), ("mqtt://", "mqtts://"), ("stomp://", "stomp+ssl://")];
 
+/// The transports of topics of programs that are no part of a fleet: these speak a language of their own, without TLS.
+const OF_TOPICS: [&str; 2] = ["ros2://", "rosbridge://"];
+
+/// True if an address leads to topics of programs that are no part of a fleet, as far as is known here.
+pub(crate) fn is_of_topics(text: &str) -> bool {
+    OF_TOPICS.iter().any(|begin| text.starts_with(begin))
+}
+
 /// How the addresses of networks without a broker begin: without TLS, and with it.
 const OF_PEERS: [&str; 2] = ["peers://", "peers+tls://"];
 

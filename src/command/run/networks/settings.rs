@@ -8,7 +8,7 @@ use saoms_api::Secret;
 use saoms_api::extension::{Access, FailureNotice, Router, RouterClass, TlsPaths};
 use saoms_core::network::key;
 use saoms_core::network::rights::Grant;
-use saoms_core::network::transport::{Account, SessionSettings, TlsFiles, Transport, TransportError, peers};
+use saoms_core::network::transport::{Account, Carrier, SessionSettings, TlsFiles, TransportError, peers};
 use saoms_lang::assembly::{Assembly, ComponentSpec, RemoteTarget, TaskProperties};
 use saoms_lang::diagnostic::{Diagnostic, codes};
 
@@ -117,7 +117,7 @@ impl Resolver<'_> {
     }
 
     /// Asks a transport whether it can use settings.
-    pub(super) fn judge(&mut self, transport: Transport, settings: &SessionSettings, described: &Described) {
+    pub(super) fn judge(&mut self, transport: Carrier, settings: &SessionSettings, described: &Described) {
         for fault in transport.judge(settings) {
             let router = described.router.as_ref().map(|(index, _)| *index);
             let tls = |place: usize| router.unwrap_or(described.tls_of[place]);
@@ -134,6 +134,22 @@ impl Resolver<'_> {
             };
             self.fault(component, property, &fault.text);
         }
+    }
+
+    /// Notes that a network of other programs has `nodes`, which need more than topics.
+    pub(super) fn needs_more(&mut self, url: &str, described: &Described, nodes: bool) {
+        let Some(ComponentSpec { path, .. }) = self.assembly.all().nth(described.first).filter(|_| nodes) else {
+            return;
+        };
+        let Some(place) = self.assembly.places.get(path, "url") else { return };
+        let message = format!(
+            "components of several nodes are on the network `{url}`, which carries topics of other programs alone"
+        );
+        let one = Diagnostic::new(&codes::NODES_OVER_TOPICS, place, message);
+        self.faults.push(one.help(
+            "programs of one fleet need a network of their own, such as `host:port`; give one component this `url`, \
+             which passes on what the others say",
+        ));
     }
 
     /// Notes that there is no transport for the url of a network.
