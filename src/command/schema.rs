@@ -1,13 +1,16 @@
-//! `saoms schema`: writes the language of composites as XML schemas, for editors.
+//! `saoms schema`: writes the language of composites as XML schemas, for editors, or messages and services as a package
+//! of ROS 2.
 
-use std::path::PathBuf;
+mod package;
+
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use saoms_tools::xsd::{Xsd, catalog, schemas};
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
-use crate::output::{print, write_into};
+use crate::output::{eprint, print, write_into};
 use crate::plugins::{files_read, registry};
 
 const EXIT_CODES: &str = "\
@@ -29,6 +32,10 @@ pub(crate) struct SchemaArguments {
     #[arg(long, value_enum, value_name = "VERSION", default_value_t = XsdVersion::V1_0)]
     pub(crate) xsd: XsdVersion,
 
+    /// Write messages and services as a package of ROS 2 interfaces, `saoms_msgs`, in place of XML schemas
+    #[arg(long, conflicts_with = "xsd")]
+    pub(crate) ros2: bool,
+
     #[command(flatten)]
     pub(crate) plugins: PluginArguments,
 }
@@ -49,16 +56,32 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Exit {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
+    let folder = &arguments.output;
+    if arguments.ros2 {
+        let files = match package::files(&registry) {
+            Ok(files) => files,
+            Err(fault) => {
+                eprint(&format!("error: {fault}\n"));
+                return Exit::WrongInput;
+            }
+        };
+        let texts: Vec<(PathBuf, &String)> = files.iter().map(|(name, text)| (folder.join(name), text)).collect();
+        return written(folder, &texts, arguments);
+    }
     let xsd = match arguments.xsd {
         XsdVersion::V1_0 => Xsd::V1_0,
         XsdVersion::V1_1 => Xsd::V1_1,
     };
-    let folder = &arguments.output;
     let schemas = schemas(&registry, xsd);
     let catalog = catalog(&schemas);
     let texts = schemas.iter().map(|schema| (folder.join(schema.file), &schema.text));
     let texts: Vec<(PathBuf, &String)> = texts.chain([(folder.join(CATALOG), &catalog)]).collect();
-    match write_into("schema", folder, &texts, files_read(&arguments.plugins)) {
+    written(folder, &texts, arguments)
+}
+
+/// Writes files, and says which.
+fn written(folder: &Path, texts: &[(PathBuf, &String)], arguments: &SchemaArguments) -> Exit {
+    match write_into("schema", folder, texts, files_read(&arguments.plugins)) {
         Ok(()) => {
             texts.iter().for_each(|(path, _)| print(&format!("{}\n", path.display())));
             Exit::Done

@@ -167,8 +167,8 @@ fn stream_is_read(stream: &str, read: &Path) -> String {
     format!("error: {stream} is {which}\n  = help: send {stream} to another file\n")
 }
 
-/// Writes texts into a folder, which is made if it is not there, beside files that are read. None is written where one
-/// cannot be.
+/// Writes texts into a folder and those in it, which are made if they are not there, beside files that are read. None
+/// is written where one cannot be.
 ///
 /// # Errors
 /// One cannot be written, or would be written over another file.
@@ -190,7 +190,10 @@ pub(crate) fn write_into(
     if fs::metadata(folder).is_ok_and(|about| !about.is_dir()) {
         return refused("which is a file");
     }
-    make_folder(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
+    let inner = texts.iter().filter_map(|(path, _)| path.parent());
+    for folder in std::iter::once(folder).chain(inner) {
+        make_folder(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
+    }
     let mut outputs = Outputs::beside(read);
     let places: Vec<Place> = texts.iter().map(|(path, _)| outputs.add(asked(path))).collect::<Result<_, _>>()?;
     for (place, (path, text)) in places.into_iter().zip(texts) {

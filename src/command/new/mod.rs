@@ -1,6 +1,7 @@
 //! `saoms new`: a plugin crate, a site or a composite that works, to start from.
 
 mod files;
+mod messages;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,6 +51,21 @@ pub(crate) enum NewKind {
         /// The folder to make; its name becomes that of the composite
         path: PathBuf,
     },
+    /// Make declarations in Rust of interfaces of ROS 2: files `.msg` and `.srv`
+    #[command(after_help = EXIT_CODES)]
+    Messages {
+        /// The files, with those of all types that they name; the package is the folder above `msg` or `srv`
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+
+        /// The file to make, in Rust
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+
+        /// The package of files that lie in no folder `msg` or `srv`
+        #[arg(long, value_name = "NAME")]
+        package: Option<String>,
+    },
     /// Make a composite with one robot
     #[command(after_help = EXIT_CODES)]
     Composite {
@@ -75,6 +91,7 @@ pub(crate) fn new(arguments: &NewArguments) -> Exit {
         NewKind::Plugin { path, kind, api } => plugin(path, *kind, api.as_deref()),
         NewKind::Site { path } => site(path),
         NewKind::Composite { path } => composite(path),
+        NewKind::Messages { files, output, package } => declarations(files, output, package.as_deref()),
     };
     match made {
         Ok(next) => {
@@ -130,6 +147,15 @@ fn composite(path: &Path) -> Result<String, String> {
     write_all(folder, vec![(name, files::composite(&stem))])?;
     let path = path.display();
     Ok(format!("Made {path}. Next:\n\n  saoms check {path}\n  saoms run {path} --virtual\n"))
+}
+
+fn declarations(files: &[PathBuf], output: &Path, package: Option<&str>) -> Result<String, String> {
+    let text = messages::declarations(files, package)?;
+    let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = output.file_name().map(PathBuf::from);
+    let name = name.ok_or_else(|| format!("found `{}`, expected the file to make", output.display()))?;
+    write_all(folder, vec![(name, text)])?;
+    Ok(format!("Made {}\n", output.display()))
 }
 
 fn site(path: &Path) -> Result<String, String> {

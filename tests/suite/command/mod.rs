@@ -23,6 +23,7 @@ mod paths;
 mod planted;
 mod recording;
 mod report;
+mod ros;
 mod schema;
 mod service;
 mod simulate;
