@@ -102,7 +102,7 @@ impl Batch {
     }
 
     /// The record of a head of this batch.
-    pub(super) fn record(&self, head: &Head) -> Record {
+    pub(crate) fn record(&self, head: &Head) -> Record {
         Record::new(head.record_id, head.text, head.names, self.values_of(head))
     }
 

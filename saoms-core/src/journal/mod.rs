@@ -22,7 +22,7 @@ mod select;
 mod tests;
 mod why;
 
-pub(crate) use batch::Head;
+pub(crate) use batch::{Batch, Head};
 pub(crate) use entry::{COMPONENT_FAILED, FLEET_CHANGED, FROM_OUTSIDE};
 pub use entry::{Change, JournalEntry};
 pub use excerpt::LiveJournal;

@@ -10,6 +10,7 @@ use super::{FleetSample, Occurrence, RunEvent, RunProgress, SampleRate, SentMess
 use crate::journal::{ComponentName, JournalEntry};
 use crate::report::RunReport;
 use crate::status::ComponentStatus;
+use crate::tape::Step;
 
 /// Who hears that an observer cannot write what it is to write to its file.
 pub trait WriterEvents: Send + Sync {
@@ -60,6 +61,18 @@ pub trait Observer: Send + Sync + 'static {
     /// A component sent a message on a topic that is wanted. Messages without a reader are included.
     fn message(&self, sent: &SentMessage) {
         let _ = sent;
+    }
+
+    /// True if the tape of a component is wanted: all that it gets and does. Called when the component starts, on a
+    /// thread of the run, so it has to be fast.
+    fn wants_tape(&self, component: &str) -> bool {
+        let _ = component;
+        false
+    }
+
+    /// A step of a component whose tape is wanted has ended.
+    fn step(&self, component: &str, step: &Step) {
+        let _ = (component, step);
     }
 
     /// Events and messages came faster than the observers took them in, and are lost: in real time alone. Lines of the
@@ -170,7 +183,7 @@ pub struct Records<'a> {
 pub struct LostEvents {
     /// Number of alerts that began, changed or were over.
     pub alerts: u64,
-    /// Number of messages of topics that it wants.
+    /// Number of messages of topics, and of steps of components, that it wants.
     pub messages: u64,
 }
 
@@ -223,6 +236,13 @@ impl Observers {
         self.all.iter().enumerate().filter(wants).map(|(number, _)| number as u32).collect()
     }
 
+    /// The numbers of the observers that want the tape of a component.
+    pub(crate) fn of_tape(&self, component: &str) -> Vec<u32> {
+        let wants = |observer: &dyn Observer| contained(|| observer.wants_tape(component)).unwrap_or(false);
+        let all = self.all.iter().enumerate();
+        all.filter(|(_, (observer, _))| wants(&**observer)).map(|(number, _)| number as u32).collect()
+    }
+
     /// The number of an observer.
     pub(crate) fn number(&self, observer: &Arc<dyn Observer>) -> Option<u32> {
         self.all.iter().position(|(one, _)| Arc::ptr_eq(one, observer)).map(|place| place as u32)
@@ -246,6 +266,12 @@ impl Observers {
             if !sent.is_of_other || observer.hears_others() {
                 contained(|| observer.message(sent));
             }
+        }
+    }
+
+    pub(crate) fn step(&self, component: &str, step: &Step, observers: &[u32]) {
+        for (observer, _) in observers.iter().filter_map(|number| self.all.get(*number as usize)) {
+            contained(|| observer.step(component, step));
         }
     }
 

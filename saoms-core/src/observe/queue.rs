@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use saoms_api::{Level, Time};
 
 use super::{FleetSample, Interest, LostEvents, Observers, Occurrence, RunEvent, RunProgress, SentMessage};
+use crate::tape::Step;
 
 /// Maximum number of events that wait for the observers.
 const CAPACITY: usize = 65_536;
@@ -13,7 +14,7 @@ const HURRY: usize = CAPACITY / 4;
 /// Time between two batches, in which events gather: a writer wakes the reader once for a batch, and not for each of many
 /// thousand events a second. Nobody sees that it is not less.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Maximum size of the lines among them, in bytes, beside the last one.
+/// Maximum size of the lines and steps among them, in bytes, beside the last one.
 const MOST_BYTES: usize = 64 << 20;
 /// Maximum number of samples that wait beside these: each is as large as the fleet.
 const MOST_SAMPLES: usize = 2;
@@ -26,6 +27,8 @@ pub(crate) enum Notification {
     Sent(SentMessage, Arc<[u32]>),
     /// The fleet at one moment.
     Sample(Box<FleetSample>),
+    /// A step of a component whose tape the observers of these numbers want.
+    Step(Arc<str>, Box<Step>, Arc<[u32]>),
 }
 
 impl Notification {
@@ -34,6 +37,7 @@ impl Notification {
             Notification::Event(event) => event.time,
             Notification::Sent(sent, _) => sent.message.header().sent,
             Notification::Sample(sample) => sample.time,
+            Notification::Step(_, step, _) => Time::from_nanos(step.time),
         }
     }
 
@@ -42,12 +46,13 @@ impl Notification {
             Notification::Event(event) => observers.event(event),
             Notification::Sent(sent, who) => observers.message(sent, who),
             Notification::Sample(sample) => observers.sample(sample),
+            Notification::Step(component, step, who) => observers.step(component, step, who),
         }
     }
 }
 
 impl Notification {
-    /// Bytes of its line, if a component wrote one.
+    /// Bytes of its line, if a component wrote one, or of a step.
     fn size(&self) -> usize {
         match self {
             Notification::Event(RunEvent {
@@ -55,6 +60,7 @@ impl Notification {
                     Occurrence::Log { text, .. } | Occurrence::Console { text } | Occurrence::Alert { text: Some(text), .. },
                 ..
             }) => text.len(),
+            Notification::Step(_, step, _) => step.size(),
             _ => 0,
         }
     }
@@ -122,7 +128,7 @@ impl Lost {
                 self.events += 1;
                 self.alerts += u64::from(matches!(event.what, Occurrence::Alert { .. }));
             }
-            Notification::Sent(_, who) => {
+            Notification::Sent(_, who) | Notification::Step(_, _, who) => {
                 self.events += 1;
                 who.iter().for_each(|number| *self.messages.entry(*number).or_default() += 1);
             }

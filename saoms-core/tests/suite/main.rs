@@ -30,6 +30,7 @@ mod orders;
 mod reaction;
 mod real_time;
 mod regions;
+mod replay;
 mod sample;
 mod services;
 mod speakers;

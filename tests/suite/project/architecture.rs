@@ -29,8 +29,8 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "saoms-core/src",
         "crate::",
         &[
-            "hash", "plugin", "assemble", "bus", "journal", "adaptation", "report", "status", "observe", "fault",
-            "store", "network", "web", "schedule",
+            "hash", "plugin", "assemble", "bus", "journal", "adaptation", "report", "status", "tape", "observe",
+            "fault", "store", "network", "web", "schedule", "replay",
         ],
     ),
 ];

@@ -150,6 +150,7 @@ impl Body {
             return Err(Refusal::NotNow(ENDED.to_owned()));
         };
         self.instance = new;
+        self.part.note_replacement(shared);
         let inboxes = [std::mem::take(&mut self.inboxes), std::mem::take(&mut self.reactions)];
         self.fit_inboxes();
         let takeover = if is_nothing { Takeover::Began } else { Takeover::Continued };

@@ -49,7 +49,7 @@ impl Change<'_> {
         let now = self.shared.clock.now();
         (body.part.now, body.part.due) = (now, now);
         let (values, had) = (Arc::clone(&after), Arc::clone(&before));
-        let take = move |body: &mut Body, _: &Arc<Shared>| body.take_values(values);
+        let take = move |body: &mut Body, shared: &Arc<Shared>| body.take_values(shared, values);
         let goes_on = move |body: Box<Body>, _: Result<(), Failure>, shared: &Arc<Shared>| go_on(shared, body, had);
         let (body, taken) = match within_member(self.shared, ("`update`", WAIT), body, take, goes_on) {
             Ok(returned) => returned,
@@ -104,7 +104,7 @@ impl Change<'_> {
         for Updated { number, body, before, .. } in std::mem::take(&mut self.updated).into_iter().rev() {
             let Some(body) = body else { continue };
             let (had, left) = (Arc::clone(&before), Arc::clone(&before));
-            let take_back = move |body: &mut Body, _: &Arc<Shared>| body.take_back(had);
+            let take_back = move |body: &mut Body, shared: &Arc<Shared>| body.take_back(shared, had);
             let goes_on = move |body: Box<Body>, _: Result<(), Failure>, shared: &Arc<Shared>| {
                 go_on(shared, body, left);
             };
@@ -131,7 +131,7 @@ impl Change<'_> {
 
 /// Lets a component go on with the values that it had, on the thread on which its code has returned.
 fn go_on(shared: &Shared, mut body: Box<Body>, before: Arc<ComponentSpec>) {
-    let result = body.take_back(before);
+    let result = body.take_back(shared, before);
     settle(shared, body, result);
 }
 
@@ -159,14 +159,27 @@ impl Engine {
 
 impl Body {
     /// Lets the component have the values of its earlier specification again.
-    pub(in crate::schedule) fn take_back(&mut self, before: Arc<ComponentSpec>) -> Result<(), Failure> {
-        if Arc::ptr_eq(&self.part.spec, &before) { Ok(()) } else { self.take_values(before) }
+    pub(in crate::schedule) fn take_back(
+        &mut self,
+        shared: &Shared,
+        before: Arc<ComponentSpec>,
+    ) -> Result<(), Failure> {
+        if Arc::ptr_eq(&self.part.spec, &before) { Ok(()) } else { self.take_values(shared, before) }
     }
 
     /// Lets the component take the values of a specification. After an error it goes on with those that it has.
-    pub(in crate::schedule) fn take_values(&mut self, changed: Arc<ComponentSpec>) -> Result<(), Failure> {
+    pub(in crate::schedule) fn take_values(
+        &mut self,
+        shared: &Shared,
+        changed: Arc<ComponentSpec>,
+    ) -> Result<(), Failure> {
         match &mut self.instance {
-            Some(instance) => contained(|| instance.update(&changed.values)).and_then(|updated| updated)?,
+            Some(instance) => {
+                self.part.begin_update(&changed);
+                let updated = contained(|| instance.update(&changed.values)).and_then(|updated| updated);
+                self.part.end_step(shared, updated.as_ref().err());
+                updated?;
+            }
             None => return Err(Failure::new("it has just ended")),
         }
         self.part.spec = changed;

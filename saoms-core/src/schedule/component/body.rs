@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
-use saoms_api::host::{DynComponent, Invocation, SharedMessage};
+use saoms_api::host::{DynComponent, Host, Invocation, SharedMessage};
 use saoms_api::{CallError, Cause, Context, Failure, Time};
 use saoms_lang::assembly::ComponentSpec;
 
 use super::effects::Effects;
 use super::host::ComponentHost;
 use super::part::Part;
+use super::taped::TapedHost;
 use crate::fault::TaskFault;
 use crate::schedule::shared::Shared;
 use crate::status::{Description, named_values};
@@ -85,12 +86,18 @@ impl Body {
             shared.stops.request(&self.part.stops);
         }
         let before = if matches!(job, Job::Execute | Job::React) { self.save_touched() } else { Ok(()) };
+        if self.part.tape.is_some() && before.is_ok() {
+            self.begin_step_of(job);
+        }
         let mut result = match job {
             _ if before.is_err() => before,
             Job::Execute => {
                 let fault = self.part.fault.take();
                 if let Some(TaskFault::Crash { restart }) = fault {
                     self.part.crash = Some(restart);
+                }
+                if fault.is_some() {
+                    self.part.note_fault();
                 }
                 let execute = |instance: &mut dyn DynComponent, context: &mut Context<'_>| {
                     fault.map_or(Ok(()), TaskFault::happen)?;
@@ -115,6 +122,7 @@ impl Body {
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
+        self.part.end_step(shared, result.as_ref().err());
         // First of all: nobody may write without end and answer that another component is busy.
         result = self.part.spent.is_within().and(result);
         if let Err(failure) = &result
@@ -186,6 +194,7 @@ impl Body {
     }
 
     fn start(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
+        self.part.begin_tape(shared);
         self.construct()?;
         self.part.initializing = true;
         self.part.recorder.reset();
@@ -211,7 +220,11 @@ impl Body {
     ) -> Result<Result<(), CallError>, Failure> {
         self.part.begin(cause);
         let before = self.save_touched();
-        let result = before.and_then(|()| self.call(shared, |instance, context| instance.serve(invocation, context)));
+        let result = match before {
+            Err(failure) => Err(failure),
+            Ok(()) if self.part.tape.is_some() => self.serve_taped(shared, invocation, cause),
+            Ok(()) => self.call(shared, |instance, context| instance.serve(invocation, context)),
+        };
         let mut result = self.part.spent.is_within().and(result);
         self.part.lasting.touch();
         if self.part.lasting.saves_at_once {
@@ -281,12 +294,24 @@ fn call<T>(
         return Err(Failure::new("there is no component to run"));
     };
     let has_departed = part.has_departed;
+    let run = |host: &mut dyn Host| {
+        let mut context = Context::new(host, inboxes).with_filled(filled);
+        if has_departed {
+            context = context.with_departed();
+        }
+        contained(|| code(instance.as_mut(), &mut context))
+    };
+    let tape = part.tape.take_if(|tape| tape.is_open());
     let mut host = ComponentHost { shared, part };
-    let mut context = Context::new(&mut host, inboxes).with_filled(filled);
-    if has_departed {
-        context = context.with_departed();
-    }
-    let result = contained(|| code(instance.as_mut(), &mut context));
+    let result = match tape {
+        None => run(&mut host),
+        Some(tape) => {
+            let mut taped = TapedHost::new(host, tape);
+            let result = run(&mut taped);
+            host = taped.into_host();
+            result
+        }
+    };
     if !host.part.unheard.is_empty() {
         host.tell_unheard();
     }

@@ -8,6 +8,7 @@ use saoms_api::{Failure, Saved};
 
 use super::body::Body;
 use super::part::Part;
+use super::steps::note_restored;
 use crate::bus::{Bus, TopicId};
 use crate::report::Sections;
 use crate::schedule::engine::memory::AlertForm;
@@ -230,6 +231,7 @@ impl Body {
             }
             return Ok(());
         };
+        note_restored(&mut self.part.tape, &saved);
         let restored = contained(|| instance.restore(&saved)).and_then(|restored| restored);
         restored.map_err(|failure| Failure::new(format!("could not continue with its saved state: {failure}")))?;
         (lasting.saved, lasting.continued) = (Some(saved), true);

@@ -13,6 +13,8 @@ pub(super) mod library;
 pub(super) mod part;
 pub(super) mod remote;
 pub(super) mod spent;
+mod steps;
 pub(super) mod stored;
+mod taped;
 mod unheard;
 mod web;

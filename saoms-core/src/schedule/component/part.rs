@@ -25,6 +25,7 @@ use crate::schedule::engine::votes::Ballot;
 use crate::schedule::order::InCode;
 use crate::schedule::stop::RegisteredStop;
 use crate::status::Description;
+use crate::tape::Tape;
 
 /// The part of a body that the component's context works with.
 pub(crate) struct Part {
@@ -106,6 +107,8 @@ pub(crate) struct Part {
     pub(crate) crash: Option<Option<Duration>>,
     /// Records for the journal.
     pub(crate) recorder: Recorder,
+    /// What it gets and does, where an observer wants that.
+    pub(crate) tape: Option<Box<Tape>>,
     /// Specification of the component; the targets of its wires are slot numbers.
     pub(crate) spec: Arc<ComponentSpec>,
     /// True if the instance is part of a change that is not committed: its messages are held back.
@@ -170,6 +173,7 @@ impl Part {
             fault: None,
             crash: None,
             recorder: Recorder::default(),
+            tape: None,
             spec,
             held: true,
             apart: None,

@@ -405,14 +405,14 @@ impl Body {
                 return served;
             }
             Some(InCode::TakeBack(before, _)) => {
-                let refusal = self.take_back(Arc::clone(&before)).err();
+                let refusal = self.take_back(shared, Arc::clone(&before)).err();
                 self.part.order = Some(Box::new(InCode::TakeBack(before, refusal)));
                 return Ok(());
             }
             None => return Ok(()),
         };
         let answer = match order.work.take() {
-            Some(Work::Set(changed)) => Ok(self.update(*changed).map_err(OrderError::Set)),
+            Some(Work::Set(changed)) => Ok(self.update(shared, *changed).map_err(OrderError::Set)),
             Some(Work::Call(call)) => self.answer(shared, *call, order.cause),
             None => Ok(Ok(Value::Null)),
         };
@@ -422,8 +422,8 @@ impl Body {
     }
 
     /// Gives the component new values of its properties.
-    fn update(&mut self, changed: ComponentSpec) -> Result<Value, SetError> {
-        let taken = self.take_values(Arc::new(changed));
+    fn update(&mut self, shared: &Shared, changed: ComponentSpec) -> Result<Value, SetError> {
+        let taken = self.take_values(shared, Arc::new(changed));
         taken.map_err(|failure| SetError::Refused { component: self.part.name.to_string(), failure })?;
         Ok(Value::Null)
     }
