@@ -8,13 +8,16 @@ use std::sync::Arc;
 use mcap::records::{AttachmentHeader, Metadata, Record, SchemaHeader, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{MAGIC, McapError, McapResult, parse_record};
+use saoms_api::Message;
 use saoms_api::host::cdr;
+use saoms_core::tape;
 use saoms_registry::schema::Schema;
 use serde_json::Value;
 
 use crate::RecordingError;
 use crate::file::{ChannelForm, END, ROLE, RUN, SCHEMA, SENDERS};
 use crate::messages::Senders;
+use crate::recording::{TAPE, TAPES};
 use crate::writing::DRAWING;
 
 /// No record and no chunk is larger: what says so is damaged.
@@ -100,6 +103,12 @@ impl Channel {
         self.form.metadata.get(ROLE).is_some_and(|role| role == DRAWING)
     }
 
+    /// The path of the component whose tape it is.
+    pub fn taped_component(&self) -> Option<&str> {
+        let is_tape = self.form.metadata.get(ROLE).is_some_and(|role| role == TAPE);
+        self.topic().strip_prefix(TAPES).filter(|_| is_tape)
+    }
+
     /// True if it tells something of the others.
     fn has_senders(&self) -> bool {
         self.form.metadata.get(ROLE).is_some_and(|role| role == SENDERS)
@@ -113,6 +122,12 @@ impl fmt::Debug for Channel {
 }
 
 impl RecordedMessage {
+    /// The step of a component, in a channel with a tape; `None` if it is of another version of the program.
+    pub fn step(&self) -> Option<tape::Step> {
+        let is_known = self.channel.form.metadata.get(SCHEMA).is_some_and(|schema| schema == tape::Step::SCHEMA);
+        is_known.then(|| cdr::decode(&self.bytes).ok()).flatten()
+    }
+
     /// The message as JSON; `None` if this program cannot read it, as one of another program.
     pub fn json(&self) -> Option<Value> {
         match &self.channel.schema {

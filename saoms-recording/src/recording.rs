@@ -14,6 +14,7 @@ use saoms_core::observe::{
 };
 use saoms_core::report::RunReport;
 use saoms_core::schedule::Handle;
+use saoms_core::tape::Step;
 use serde_json::json;
 
 use crate::drawer::{Drawer, Heard, HeardTopic};
@@ -45,6 +46,8 @@ pub struct RecordedRun {
     pub version: String,
     /// The topics whose messages are recorded, those of drawings included; `None` is all.
     pub topics: Option<Vec<String>>,
+    /// The components whose tapes are recorded, by their paths.
+    pub components: Vec<String>,
     /// The size of a file after which another one begins; `None` is no limit.
     pub limit: Option<u64>,
 }
@@ -112,6 +115,8 @@ struct Topics {
     wanted: HashMap<String, WantedTopic>,
     /// Where the messages of those go that had some.
     ways: HashMap<Arc<str>, Way>,
+    /// The channels of tapes, by the paths of their components.
+    tapes: HashMap<String, u16>,
     /// The numbers of the next channel, and of the next topic that drawings hear.
     next: u16,
     next_heard: usize,
@@ -123,6 +128,11 @@ struct WantedTopic {
     /// The topic, until drawings have heard of it, and its number from then on.
     heard: Option<Result<HeardTopic, usize>>,
 }
+
+/// The topic of the tape of a component, before its path.
+pub(crate) const TAPES: &str = "/saoms/tape/";
+/// The role of its channel.
+pub(crate) const TAPE: &str = "tape";
 
 /// Where the messages of a topic go.
 #[derive(Clone, Copy, Default)]
@@ -202,7 +212,7 @@ impl Recording {
         if let Some(known) = topics.ways.get(topic) {
             return *known;
         }
-        let Topics { wanted, ways, next, next_heard } = &mut *topics;
+        let Topics { wanted, ways, next, next_heard, .. } = &mut *topics;
         let mut way = Way::default();
         if let Some(wanted) = wanted.get_mut(&**topic) {
             let form = wanted.is_recorded.then(|| ChannelForm::of(topic, &wanted.schema, None).ok()).flatten();
@@ -226,6 +236,21 @@ impl Recording {
         }
         ways.insert(Arc::clone(topic), way);
         way
+    }
+
+    /// The channel of the tape of a component.
+    fn tape(&self, component: &str) -> Option<u16> {
+        let mut topics = lock(&self.topics);
+        if let Some(known) = topics.tapes.get(component) {
+            return Some(*known);
+        }
+        let form = ChannelForm::of(&format!("{TAPES}{component}"), Step::SCHEMA, Some(TAPE)).ok();
+        let form = form.filter(|_| topics.next < u16::MAX)?;
+        self.shared.queue.open(form);
+        topics.next += 1;
+        let channel = topics.next - 1;
+        topics.tapes.insert(component.to_owned(), channel);
+        Some(channel)
     }
 
     /// Waits until the thread has written all that came.
@@ -333,6 +358,21 @@ impl Observer for Recording {
             Item { channel, sender, time, end: bytes.len() }
         });
         self.put(item.as_slice(), &bytes, heard.map(|topic| Heard::Message(topic, message.clone())));
+    }
+
+    fn wants_tape(&self, component: &str) -> bool {
+        self.run.components.iter().any(|one| one == component)
+    }
+
+    fn step(&self, component: &str, step: &Step) {
+        match self.tape(component) {
+            Some(channel) => {
+                let mut bytes = lock(&self.bytes);
+                cdr::encode_into(step, &mut bytes);
+                self.tell(channel, self.at(Time::from_nanos(step.time)), &bytes);
+            }
+            None => drop(self.shared.lost.fetch_add(1, Ordering::Relaxed)),
+        }
     }
 
     fn lost(&self, lost: LostEvents) {

@@ -33,6 +33,11 @@ pub(crate) struct RecordingArguments {
     #[arg(long = "record-topics", value_name = "TOPIC,...", requires = "record", value_delimiter = ',')]
     topics: Option<Vec<String>>,
 
+    /// Record all that these components get and do, too, so that `saoms replay FILE --component NAME` runs each of them
+    /// again alone
+    #[arg(long = "record-component", value_name = "NAME,...", requires = "record", value_delimiter = ',')]
+    components: Vec<String>,
+
     /// End the file at this size, from 1MB on, and go on in another one: `FILE-2.mcap`, `FILE-3.mcap` and so on
     #[arg(long = "record-limit", id = "record-limit", value_name = "SIZE", requires = "record", value_parser = limit)]
     limit: Option<u64>,
@@ -92,9 +97,27 @@ pub(super) fn of(
         node: arguments.node.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         topics,
+        components: components(arguments, assembly)?,
         limit: arguments.recording.limit,
     };
     Ok(Recording::new(path, mode_of_files(), run, Box::new(FileAlert::of("recording", alerts))))
+}
+
+/// The components whose tapes are recorded. One that the fleet does not have is reported.
+fn components(arguments: &RunArguments, assembly: &Assembly) -> Result<Vec<String>, Exit> {
+    let wanted = &arguments.recording.components;
+    let names = || assembly.components.iter().map(|one| one.path.as_str());
+    let unknown: Vec<&String> = wanted.iter().filter(|one| !names().any(|name| name == *one)).collect();
+    for component in &unknown {
+        let near = nearest(component, names()).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+        let component = one_line(component);
+        eprint(&format!("error: `--record-component`: the fleet has no component `{component}`{near}\n"));
+    }
+    if unknown.is_empty() {
+        return Ok(wanted.clone());
+    }
+    eprint(&format!("\n{}: nothing was started\n", counted(unknown.len(), "error")));
+    Err(Exit::WrongInput)
 }
 
 /// The topics that drawings may have beside these, in each of their sites.

@@ -22,6 +22,7 @@ mod outputs;
 mod paths;
 mod planted;
 mod recording;
+mod replaying;
 mod report;
 mod ros;
 mod schema;

@@ -1,4 +1,6 @@
-//! `saoms replay`: shows a recorded run in a browser.
+//! `saoms replay`: shows a recorded run in a browser, or runs one of its components again, alone.
+
+mod component;
 
 use std::path::{Path, PathBuf};
 
@@ -14,26 +16,40 @@ use crate::output::{displayed, eprint};
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0    never, since the page is served until Ctrl-C
-  1    standard output could not be written, or the recording not be read
-  2    the input is wrong: no recording, one that was not finished or of another program, or the port is taken
+  0    with `--component`: it does all that it did then, as far as its tape goes; else never, since the page is served
+       until Ctrl-C
+  1    with `--component`: it does something else; or standard output could not be written, or the recording not be read
+  2    the input is wrong: no recording, one of another program, one without a tape of the component, or for the page one
+       that was not finished; a class that is not there, a composite with errors, or the port is taken
   130  ended by Ctrl-C";
 
-/// Show a recorded run in a browser, as `saoms view` does with a report: with a slider over time, a pause and a speed
+/// Show a recorded run in a browser, as `saoms view` does with a report, with a slider over time, a pause and a speed;
+/// or run one of its components again, alone, with the code of today, and say where it does something else than then
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ReplayArguments {
-    /// The file of `saoms run --record`; of several files of a run the last one
-    #[arg(value_name = "FILE")]
-    recording: PathBuf,
+    /// The file of `saoms run --record`; of several files of a run the last one, and with `--component` all of them in
+    /// their order
+    #[arg(value_name = "FILE", required = true)]
+    recordings: Vec<PathBuf>,
 
     /// The port at which the page is served, on this machine alone; 0 is one that the system chooses
-    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    #[arg(long, value_name = "PORT", default_value_t = 0, conflicts_with = "component")]
     port: u16,
+
+    #[command(flatten)]
+    component: component::ComponentArguments,
 }
 
 pub(crate) fn replay(arguments: &ReplayArguments) -> Exit {
-    match finished(&arguments.recording) {
+    if let Some(exit) = component::replay(&arguments.recordings, &arguments.component) {
+        return exit;
+    }
+    let [recording] = &arguments.recordings[..] else {
+        eprint("error: the page shows one file: of several files of a run, name the last one\n");
+        return Exit::WrongInput;
+    };
+    match finished(recording) {
         Ok(run) => serve(run, arguments.port),
         Err(exit) => exit,
     }
