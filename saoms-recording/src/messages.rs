@@ -71,7 +71,8 @@ impl Log {
 }
 
 impl JournalRecord {
-    /// Becomes the record of an entry. The memory of its texts is reused, since most messages of a recording are records.
+    /// Becomes the record of an entry. The memory of its texts is reused, since most messages of a recording are
+    /// records.
     pub(crate) fn set(&mut self, time: u64, entry: &JournalEntry) {
         fn copy(text: &str, to: &mut String) {
             to.clear();

@@ -11,8 +11,8 @@ use crate::tape::Step;
 const CAPACITY: usize = 65_536;
 /// Number of waiting events at which the reader takes them at once; so it does with few long lines or samples.
 const HURRY: usize = CAPACITY / 4;
-/// Time between two batches, in which events gather: a writer wakes the reader once for a batch, and not for each of many
-/// thousand events a second. Nobody sees that it is not less.
+/// Time between two batches, in which events gather: a writer wakes the reader once for a batch, and not for each of
+/// many thousand events a second. Nobody sees that it is not less.
 const PAUSE: Duration = Duration::from_millis(10);
 /// Maximum size of the lines and steps among them, in bytes, beside the last one.
 const MOST_BYTES: usize = 64 << 20;
@@ -243,7 +243,8 @@ impl EventQueue {
         }
     }
 
-    /// Waits for events, lets them gather until a moment, and takes all of them. The flag is true if the queue is closed.
+    /// Waits for events, lets them gather until a moment, and takes all of them. The flag is true if the queue is
+    /// closed.
     fn next_batch(
         &self,
         batch: &mut VecDeque<Notification>,
