@@ -97,7 +97,7 @@ fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &
     let implementation = component.implementation.as_ref()?;
     match &implementation.kind {
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
-        ImplementationKind::Python { name, .. } => name.as_ref(),
+        ImplementationKind::Python(class) => class.name.as_ref(),
         // Unfolded already.
         ImplementationKind::Composite { .. } => None,
         ImplementationKind::Other { .. } if assume_classes => None,
@@ -133,7 +133,8 @@ fn is_in_library(
     let Some(implementation) = &component.implementation else { return true };
     let library = match &implementation.kind {
         ImplementationKind::Rust { library: Some(library), .. } => library,
-        ImplementationKind::Python { module: Some(module), class: Some(class), .. } => {
+        ImplementationKind::Python(python) => {
+            let (Some(module), Some(class)) = (&python.module, &python.class) else { return true };
             let link = contribution.library(implementation.origin);
             return in_python::is_declared((module, class), link, assume_classes, report);
         }
@@ -192,7 +193,7 @@ fn is_in_library(
 /// The library that a component's composite names for its class, as the first composite would name it.
 pub(crate) fn library(component: &ComponentElement, contribution: &Contribution, sources: &Sources) -> Option<String> {
     let implementation = component.implementation.as_ref()?;
-    if matches!(implementation.kind, ImplementationKind::Python { .. }) {
+    if matches!(implementation.kind, ImplementationKind::Python(_)) {
         return None;
     }
     let Some(LibraryLink::To(path)) = contribution.library(implementation.origin) else { return None };

@@ -19,7 +19,7 @@ pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<
             class.iter().map(|class| class.replace('.', "/")).collect()
         }
         // It declares itself.
-        ImplementationKind::Composite { .. } | ImplementationKind::Python { .. } => Vec::new(),
+        ImplementationKind::Composite { .. } | ImplementationKind::Python(_) => Vec::new(),
         ImplementationKind::Other { kind, .. } => {
             let names: &[&str] = match kind.as_str() {
                 "script" | "python" => &["script"],

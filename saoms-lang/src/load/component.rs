@@ -10,7 +10,8 @@ use super::{Loader, PassedOver};
 use crate::diagnostic::{Diagnostic, Severity, codes, meant_boolean, nearest, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
-    ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Origin, Replicas, SAOMS_NAMESPACE,
+    ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Origin, PythonClass, Replicas,
+    SAOMS_NAMESPACE,
 };
 use crate::source::Text;
 use crate::syntax::{Attribute, Element, is_local_name};
@@ -157,7 +158,7 @@ impl Loader<'_> {
                 let (module, class) = (self.required(element, "module"), self.required(element, "class"));
                 let named = module.as_ref().zip(class.as_ref());
                 let name = named.map(|(module, class)| Text::new(format!("{module}.{class}").into(), class.location));
-                ImplementationKind::Python { module, class, name }
+                ImplementationKind::Python(Box::new(PythonClass { module, class, name }))
             }
             (Family::Own, _) => {
                 _ = self.unexpected(element, &COMPONENT, family);

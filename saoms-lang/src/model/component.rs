@@ -59,7 +59,7 @@ impl ComponentElement {
     pub fn class(&self) -> Option<&Text> {
         match &self.implementation.as_ref()?.kind {
             ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
-            ImplementationKind::Python { name, .. } => name.as_ref(),
+            ImplementationKind::Python(class) => class.name.as_ref(),
             _ => None,
         }
     }
@@ -72,6 +72,17 @@ pub struct Implementation {
     pub origin: Origin,
     /// The kind, with the name that it gives.
     pub kind: ImplementationKind,
+}
+
+/// A class in Python, beside other kinds of implementations, which are many and have less to name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PythonClass {
+    /// `module`
+    pub module: Option<Text>,
+    /// `class`
+    pub class: Option<Text>,
+    /// The name in the registry: that of the module, a dot, and that of the class, at the place of the latter.
+    pub name: Option<Text>,
 }
 
 /// A kind of implementation with what it names. `None` where the file leaves out a required attribute.
@@ -95,14 +106,7 @@ pub enum ImplementationKind {
         library: Option<Text>,
     },
     /// `implementation.python`, in the SCA namespace or in that of SAOMS.
-    Python {
-        /// `module`
-        module: Option<Text>,
-        /// `class`
-        class: Option<Text>,
-        /// The name in the registry: that of the module, a dot, and that of the class, at the place of the latter.
-        name: Option<Text>,
-    },
+    Python(Box<PythonClass>),
     /// Any other, of SCA or foreign; its element has the attributes.
     Other {
         /// The kind of another runtime: the text behind `implementation.`, as `script`.

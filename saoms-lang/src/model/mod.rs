@@ -26,7 +26,7 @@ mod run_settings;
 mod web_path;
 
 pub use component::{
-    ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Replicas, Row, Table,
+    ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, PythonClass, Replicas, Row, Table,
 };
 pub use composite::{ComponentType, Composite, Include, SeverityRule, WireElement};
 pub use contract::{

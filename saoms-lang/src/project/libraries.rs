@@ -25,7 +25,8 @@ pub(super) fn open_named(
                 ImplementationKind::Rust { library: Some(library), .. } => {
                     named.push((implementation.origin, folder.to_owned(), library.as_str().trim().to_owned()));
                 }
-                ImplementationKind::Python { module: Some(module), class: Some(class), .. } => {
+                ImplementationKind::Python(python) => {
+                    let Some((module, class)) = python.module.as_ref().zip(python.class.as_ref()) else { continue };
                     let (module, class) = (module.as_str().to_owned(), class.as_str().to_owned());
                     in_python.push((implementation.origin, (folder.to_owned(), module, class)));
                 }

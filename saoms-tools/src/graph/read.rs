@@ -258,8 +258,8 @@ fn label(component: &model::ComponentElement) -> String {
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => {
             return class.as_ref().map_or_else(String::new, ToString::to_string);
         }
-        ImplementationKind::Python { name, .. } => {
-            return name.as_ref().map_or_else(String::new, ToString::to_string);
+        ImplementationKind::Python(class) => {
+            return class.name.as_ref().map_or_else(String::new, ToString::to_string);
         }
         ImplementationKind::Composite { name } => {
             return name.as_ref().map_or_else(|| "composite".to_owned(), |name| format!("composite {name}"));

@@ -128,10 +128,12 @@ fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) 
     [&mut component.path, &mut component.site, &mut component.node].into_iter().flatten().for_each(|text| each(text));
     if let Some(implementation) = &mut component.implementation {
         use crate::model::ImplementationKind::{Java, Python, Rust};
+        use crate::model::PythonClass;
         if let Java { class } | Rust { class, .. } = &mut implementation.kind {
             class.iter_mut().for_each(&mut *each);
         }
-        if let Python { module, class, name } = &mut implementation.kind {
+        if let Python(python) = &mut implementation.kind {
+            let PythonClass { module, class, name } = &mut **python;
             [module, class, name].into_iter().flatten().for_each(&mut *each);
         }
     }

@@ -93,9 +93,9 @@ fn texts(composite: &Composite) -> Vec<&Text> {
                     all.extend(class);
                     all.extend(library.as_ref());
                 }
-                ImplementationKind::Python { module, class, .. } => {
-                    all.extend(module);
-                    all.extend(class);
+                ImplementationKind::Python(python) => {
+                    all.extend(&python.module);
+                    all.extend(&python.class);
                 }
                 ImplementationKind::Other { .. } => {}
             }
