@@ -57,15 +57,15 @@ pub fn judge(files: &Files, is_tls: bool, instead: &str) -> Vec<Fault> {
         }
         return faults;
     }
-    let mut read = |setting, path: &Option<String>| match certificates(path.as_ref()?) {
+    let mut keep = |setting, read: Option<Result<_, String>>| match read? {
         Ok(found) => Some(found),
         Err(text) => {
             faults.push((setting, text));
             None
         }
     };
-    let _ = read("ca", ca);
-    let own = read("certificate", certificate);
+    let _ = keep("ca", ca.as_ref().map(|path| authorities(path)));
+    let own = keep("certificate", certificate.as_ref().map(|path| certificates(path)));
     let own_key = match key.as_ref().map(|path| private_key(path)) {
         Some(Err(text)) => {
             faults.push(("key", text));
@@ -88,8 +88,11 @@ pub fn judge(files: &Files, is_tls: bool, instead: &str) -> Vec<Fault> {
 /// A connection of a program to a host, for whose certificate somebody in the file `ca` has to vouch.
 pub(crate) fn connection(files: &Files, host: &str) -> Result<ClientConnection, Failure> {
     let mut roots = RootCertStore::empty();
-    for one in files.ca.as_ref().map_or(Ok(Vec::new()), |path| certificates(path)).map_err(Failure::failed)? {
-        roots.add(one).map_err(Failure::failed)?;
+    if let Some(path) = &files.ca {
+        let (added, _) = roots.add_parsable_certificates(authorities(path).map_err(Failure::failed)?);
+        if added == 0 {
+            return Err(Failure::failed(format!("nobody whose certificate is in `{path}` can vouch for others")));
+        }
     }
     let config = ClientConfig::builder_with_provider(Arc::new(default_provider()))
         .with_safe_default_protocol_versions()
@@ -137,8 +140,33 @@ pub(crate) fn words(error: &Error, host: &str, without: &str) -> Option<String> 
     })
 }
 
-/// The certificates of a file, which are valid now.
+/// The certificates of a file, which are all valid now.
 fn certificates(path: &str) -> Result<Vec<CertificateDer<'static>>, String> {
+    let all = parts(path)?;
+    all.iter().try_for_each(|one| judge_certificate(path, one))?;
+    Ok(all)
+}
+
+/// Those of a file that are valid now. It may have others beside them: who collects for years those who may vouch for
+/// others has some that have expired.
+fn authorities(path: &str) -> Result<Vec<CertificateDer<'static>>, String> {
+    let mut why = None;
+    let mut all = parts(path)?;
+    all.retain(|one| match judge_certificate(path, one) {
+        Ok(()) => true,
+        Err(text) => {
+            why.get_or_insert(text);
+            false
+        }
+    });
+    match why {
+        Some(why) if all.is_empty() => Err(why),
+        _ => Ok(all),
+    }
+}
+
+/// The certificates of a file, at least one.
+fn parts(path: &str) -> Result<Vec<CertificateDer<'static>>, String> {
     let text = read(path)?;
     let all: Vec<CertificateDer<'static>> = rustls_pemfile::certs(&mut text.as_slice())
         .collect::<Result<_, _>>()
@@ -146,19 +174,22 @@ fn certificates(path: &str) -> Result<Vec<CertificateDer<'static>>, String> {
     if all.is_empty() {
         return Err(format!("there is no certificate in `{path}`: expected `-----BEGIN CERTIFICATE-----`"));
     }
-    let now = ASN1Time::now();
-    for one in &all {
-        let (_, one) = X509Certificate::from_der(one)
-            .map_err(|error| format!("the certificate in `{path}` cannot be read: {error}"))?;
-        let validity = one.validity();
-        if validity.not_after < now {
-            return Err(format!("the certificate in `{path}` has expired, on {}", validity.not_after));
-        }
-        if validity.not_before > now {
-            return Err(format!("the certificate in `{path}` is not valid yet, but from {} on", validity.not_before));
-        }
-    }
     Ok(all)
+}
+
+/// Looks whether a certificate of a file is valid now.
+fn judge_certificate(path: &str, one: &CertificateDer<'_>) -> Result<(), String> {
+    let now = ASN1Time::now();
+    let (_, one) = X509Certificate::from_der(one)
+        .map_err(|error| format!("the certificate in `{path}` cannot be read: {error}"))?;
+    let validity = one.validity();
+    if validity.not_after < now {
+        return Err(format!("the certificate in `{path}` has expired, on {}", validity.not_after));
+    }
+    if validity.not_before > now {
+        return Err(format!("the certificate in `{path}` is not valid yet, but from {} on", validity.not_before));
+    }
+    Ok(())
 }
 
 fn private_key(path: &str) -> Result<PrivateKeyDer<'static>, String> {
@@ -171,4 +202,37 @@ fn private_key(path: &str) -> Result<PrivateKeyDer<'static>, String> {
 
 fn read(path: &str) -> Result<Vec<u8>, String> {
     fs::read(path).map_err(|error| format!("`{path}` cannot be read: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use rcgen::{BasicConstraints, CertificateParams, IsCa, KeyPair, date_time_ymd};
+
+    use super::*;
+
+    /// The certificate of somebody who may vouch for others until this year.
+    fn authority(year: i32) -> String {
+        let mut params = CertificateParams::new(Vec::new()).unwrap();
+        params.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
+        params.not_before = date_time_ymd(2000, 1, 1);
+        params.not_after = date_time_ymd(year, 1, 1);
+        params.self_signed(&KeyPair::generate().unwrap()).unwrap().pem()
+    }
+
+    #[test]
+    fn who_may_not_vouch_any_more_is_passed_over_beside_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ca.pem").to_str().unwrap().to_owned();
+        let files = Files { ca: Some(path.clone()), ..Files::default() };
+        let (old, new) = (authority(2020), authority(4000));
+        fs::write(&path, format!("{old}{new}{old}")).unwrap();
+        assert_eq!((judge(&files, true, ""), authorities(&path).unwrap().len()), (Vec::new(), 1));
+        assert!(connection(&files, "broker").is_ok());
+        // In a chain of its own, each has to be valid.
+        assert!(certificates(&path).is_err());
+        fs::write(&path, format!("{old}{old}")).unwrap();
+        let faults = judge(&files, true, "");
+        assert!(faults.len() == 1 && faults[0].0 == "ca" && faults[0].1.contains("has expired, on"), "{faults:?}");
+        assert!(connection(&files, "broker").is_err());
+    }
 }
