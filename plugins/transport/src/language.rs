@@ -95,6 +95,8 @@ pub enum Ended {
     Broken(io::Error),
     /// The broker does not want the program: why, for people.
     Refused(String),
+    /// The broker does not let the program read the keys of the subscription with this number.
+    NotRead(u16),
     /// The broker cannot serve the program now, and says why.
     NotNow(String),
     /// The other end says first what no such broker says.
@@ -117,19 +119,37 @@ impl Ended {
     pub fn no_account(settings: &Settings) -> Ended {
         Ended::Refused(match &settings.user {
             Some(user) => format!("the broker refuses user `{user}`: the password is wrong, or it has no such user"),
-            None => "the broker asks for a user: give `user`, and `password` or `passwordFile`".to_owned(),
+            None if settings.is_of_fleet => {
+                "the broker asks for a user: give `user`, and `password` or `passwordFile`".to_owned()
+            }
+            None => "the broker asks for a user: give `user` and `password`".to_owned(),
         })
     }
 
     /// The broker does not let the user do what each program of a network has to.
     pub fn no_right(settings: &Settings) -> Ended {
-        let who = match &settings.user {
-            Some(user) => format!("user `{user}`"),
-            None => "a program without a user".to_owned(),
-        };
+        let who = who(settings);
         Ended::Refused(format!(
             "the broker does not let {who} send and read what a fleet needs: allow it all that begins with `saoms`"
         ))
+    }
+}
+
+/// What is said where the broker does not let the user read keys.
+pub(crate) fn not_read(settings: &Settings, keys: &str) -> String {
+    let who = who(settings);
+    match settings.is_of_fleet {
+        true => format!(
+            "the broker does not let {who} read `{keys}`, which a fleet needs: allow it all that begins with `saoms`"
+        ),
+        false => format!("the broker does not let {who} read `{keys}`: allow it that"),
+    }
+}
+
+fn who(settings: &Settings) -> String {
+    match &settings.user {
+        Some(user) => format!("user `{user}`"),
+        None => "a program without a user".to_owned(),
     }
 }
 

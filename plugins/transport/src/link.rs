@@ -32,25 +32,50 @@ pub(crate) struct Incoming {
     end: usize,
 }
 
-pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+/// A connection over which nothing was said yet.
+pub(crate) struct Connected(TcpStream);
+
+/// What cuts a connection, whoever waits for it.
+pub(crate) struct Cut(TcpStream);
+
+impl Cut {
+    /// Ends the connection now.
+    pub(crate) fn cut(&self) {
+        let _ = self.0.shutdown(Shutdown::Both);
+    }
 }
 
-impl Link {
-    /// Connects; who does not answer for so long is given up.
-    pub(crate) fn open<L: Language>(settings: &Settings, patience: Duration) -> Result<Arc<Link>, Failure> {
-        let mut stream = connect(settings.address())?;
+impl Connected {
+    /// What cuts it.
+    pub(crate) fn cutter(&self) -> Result<Cut, Failure> {
+        self.0.try_clone().map(Cut).map_err(Failure::unreachable)
+    }
+
+    /// Begins to speak; who does not answer for so long is given up.
+    pub(crate) fn open<L: Language>(self, settings: &Settings, patience: Duration) -> Result<Arc<Link>, Failure> {
+        let Connected(mut stream) = self;
         let limits = stream.set_read_timeout(Some(patience)).and_then(|()| stream.set_nodelay(true));
         limits.map_err(Failure::unreachable)?;
         let mut connection = None;
         if settings.is_tls::<L>() {
             let mut own = tls::connection(&settings.tls, settings.host())?;
             while own.is_handshaking() {
-                own.complete_io(&mut stream).map_err(|error| broken::<L>(&error, settings))?;
+                own.complete_io(&mut stream).map_err(|error| broken::<L>(&error, settings, patience))?;
             }
             connection = Some(Mutex::new(own));
         }
         Ok(Arc::new(Link { stream, tls: connection, writes: Mutex::default() }))
+    }
+}
+
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Link {
+    /// Connects.
+    pub(crate) fn connect(settings: &Settings) -> Result<Connected, Failure> {
+        connect(settings.address()).map(Connected)
     }
 
     pub(crate) fn incoming(self: &Arc<Self>) -> Incoming {
@@ -143,8 +168,8 @@ impl Read for Incoming {
     }
 }
 
-/// What a broken connection means that is about to begin.
-pub(crate) fn broken<L: Language>(error: &io::Error, settings: &Settings) -> Failure {
+/// What a broken connection means that is about to begin, where the other end had so long to answer.
+pub(crate) fn broken<L: Language>(error: &io::Error, settings: &Settings, patience: Duration) -> Failure {
     let without = format!("{}://{}", L::NAME.to_ascii_lowercase(), settings.address());
     let of_tls = error.get_ref().and_then(|inner| inner.downcast_ref::<rustls::Error>());
     if let Some(text) = of_tls.and_then(|error| tls::words(error, settings.host(), &without)) {
@@ -152,7 +177,8 @@ pub(crate) fn broken<L: Language>(error: &io::Error, settings: &Settings) -> Fai
     }
     match error.kind() {
         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => Failure::unreachable(format!(
-            "it does not answer as {} does: another program may have this port, or it is about to start",
+            "it does not answer as {} does within {patience:?}: another program may have this port, or it is about to \
+             start",
             L::BROKER
         )),
         io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset | io::ErrorKind::BrokenPipe => {

@@ -10,13 +10,20 @@ use std::time::{Duration, Instant};
 use saoms_abi::{Bytes, Status, TransportEvents};
 
 use crate::connect::{ACTIVE_MQ, Greeting, connect, is_active_mq};
-use crate::language::{Ended, Heard, Language, Message, fits};
-use crate::link::{Incoming, Link, broken, lock};
+use crate::language::{Ended, Heard, Language, Message, fits, not_read};
+use crate::link::{Connected, Incoming, Link, broken, lock};
 use crate::waiting::{BATCH, Queue, Subscription, Subscriptions};
 use crate::{Failure, Settings, Transport};
 
-/// Longest time for the broker to answer while a program joins.
-const JOINING: Duration = Duration::from_millis(400);
+#[cfg(test)]
+mod tests;
+
+/// Longest time for the broker to answer while a program opens a network of a fleet, which has a second for that and
+/// tries again.
+const OPENING: Duration = Duration::from_millis(400);
+/// The same where nobody waits for it, or may wait longer: a broker that asks a directory for an account, or hashes its
+/// password, takes its time, and so does a long link.
+const JOINING: Duration = Duration::from_secs(5);
 /// Time for which a greeting is waited for.
 const GREETING: Duration = Duration::from_millis(100);
 /// Pause before the broker is tried again.
@@ -107,17 +114,17 @@ impl<L: Language> Session<L> {
         if let Some((_, text)) = settings.judge::<L>().into_iter().next() {
             return Err(Failure::failed(text));
         }
-        let name = format!("saoms{:016x}", RandomState::new().hash_one(std::process::id()));
-        let joined = join::<L>(&settings, &name)?;
+        let patience = if settings.is_of_fleet { OPENING } else { JOINING };
         let shared = Arc::new(Shared {
             settings,
-            name,
+            name: format!("saoms{:016x}", RandomState::new().hash_one(std::process::id())),
             listener: RwLock::new(Some(listener)),
             subscriptions: Mutex::default(),
             queue: Mutex::default(),
             changed: Condvar::new(),
             told: Mutex::new((true, String::new())),
         });
+        let joined = shared.join::<L>(patience)?;
         let own = Arc::clone(&shared);
         let thread = thread::Builder::new().name(format!("saoms-{}", L::NAME.to_ascii_lowercase()));
         // From here on messages are sent, even if the thread begins later.
@@ -194,6 +201,9 @@ impl<L> Drop for Session<L> {
         let mut queue = lock(&shared.queue);
         queue.is_closed = true;
         shared.changed.notify_all();
+        if let Some(joining) = queue.joining.take() {
+            joining.cut();
+        }
         // The thread that writes sends what waits; then the broker ends the connection.
         let begin = Instant::now();
         while !queue.has_ended {
@@ -209,24 +219,6 @@ impl<L> Drop for Session<L> {
             let _ = thread.join();
         }
     }
-}
-
-/// Connects, and joins.
-fn join<L: Language>(settings: &Settings, name: &str) -> Result<Joined<L>, Failure> {
-    let link = Link::open::<L>(settings, JOINING)?;
-    let mut from = BufReader::with_capacity(BATCH, link.incoming());
-    let language = L::join(settings, name, &mut from, &link).map_err(|ended| match ended {
-        // One that ends what it does not understand may have a greeting for who says nothing.
-        Ended::Broken(_) if !settings.is_tls::<L>() && greets_as_active_mq(settings) => {
-            Failure::failed(foreign::<L>(ACTIVE_MQ, settings))
-        }
-        Ended::Broken(error) => broken::<L>(&error, settings),
-        Ended::Refused(text) => Failure::failed(text),
-        Ended::NotNow(text) => Failure::unreachable(text),
-        Ended::Foreign(bytes) => Failure::failed(foreign::<L>(&bytes, settings)),
-    })?;
-    link.set_patience(QUIET).map_err(Failure::unreachable)?;
-    Ok(Joined { link, from, language })
 }
 
 fn greets_as_active_mq(settings: &Settings) -> bool {
@@ -250,11 +242,53 @@ fn foreign<L: Language>(bytes: &[u8], settings: &Settings) -> String {
 }
 
 impl Shared {
+    /// Connects, and joins; a broker that says nothing for so long is given up.
+    fn join<L: Language>(&self, patience: Duration) -> Result<Joined<L>, Failure> {
+        let settings = &self.settings;
+        let link = Link::connect(settings)?;
+        let mut queue = lock(&self.queue);
+        if queue.is_closed {
+            return Err(Failure::unreachable("the session is closed"));
+        }
+        // Who closes the session does not wait for the broker.
+        queue.joining = Some(link.cutter()?);
+        drop(queue);
+        let joined = self.join_over(link, patience);
+        lock(&self.queue).joining = None;
+        joined
+    }
+
+    fn join_over<L: Language>(&self, link: Connected, patience: Duration) -> Result<Joined<L>, Failure> {
+        let settings = &self.settings;
+        let link = link.open::<L>(settings, patience)?;
+        let mut from = BufReader::with_capacity(BATCH, link.incoming());
+        let language = L::join(settings, &self.name, &mut from, &link).map_err(|ended| match ended {
+            // One that ends what it does not understand may have a greeting for who says nothing.
+            Ended::Broken(_) if !settings.is_tls::<L>() && greets_as_active_mq(settings) => {
+                Failure::failed(foreign::<L>(ACTIVE_MQ, settings))
+            }
+            Ended::Broken(error) => broken::<L>(&error, settings, patience),
+            Ended::Refused(text) => Failure::failed(text),
+            Ended::NotRead(number) => Failure::failed(self.not_read(number)),
+            Ended::NotNow(text) => Failure::unreachable(text),
+            Ended::Foreign(bytes) => Failure::failed(foreign::<L>(&bytes, settings)),
+        })?;
+        link.set_patience(QUIET).map_err(Failure::unreachable)?;
+        Ok(Joined { link, from, language })
+    }
+
+    /// What is said where the broker does not let the program read the keys of a subscription.
+    fn not_read(&self, number: u16) -> String {
+        let subscriptions = lock(&self.subscriptions);
+        let keys = subscriptions.all.iter().find(|(_, one)| one.number == number).map_or("", |(keys, _)| keys);
+        not_read(&self.settings, keys)
+    }
+
     /// Serves a connection until it ends, and connects again.
     fn stay_joined<L: Language>(self: Arc<Self>, first: Joined<L>) {
         let mut joined = Some(first);
         while !lock(&self.queue).is_closed {
-            let one = match joined.take().map_or_else(|| join::<L>(&self.settings, &self.name), Ok) {
+            let one = match joined.take().map_or_else(|| self.join::<L>(JOINING), Ok) {
                 Ok(one) => one,
                 Err(failure) => {
                     let is_refused = failure.status == Status::FAILED;
@@ -319,6 +353,7 @@ impl Shared {
         let _ = writer.join();
         match ended {
             Ended::Refused(text) | Ended::NotNow(text) => text,
+            Ended::NotRead(number) => self.not_read(number),
             Ended::Broken(_) | Ended::Foreign(_) => "the broker is away".to_owned(),
         }
     }

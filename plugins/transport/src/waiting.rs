@@ -3,7 +3,7 @@
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-use crate::link::Link;
+use crate::link::{Cut, Link};
 
 /// Bytes that are written at once, about.
 pub(crate) const BATCH: usize = 64 << 10;
@@ -28,6 +28,8 @@ pub(crate) struct Queue {
     pub(crate) usual: Lane,
     /// The connection, while there is one that is joined.
     pub(crate) link: Option<Arc<Link>>,
+    /// The end of a connection that is about to be joined, by which it is cut.
+    pub(crate) joining: Option<Cut>,
     /// The longest frame that the broker takes.
     pub(crate) longest: usize,
     pub(crate) is_closed: bool,

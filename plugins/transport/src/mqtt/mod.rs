@@ -28,7 +28,6 @@ const OPTIONS: u8 = 0x04 | 0x20;
 #[derive(Debug)]
 pub struct Mqtt {
     longest: usize,
-    user: Option<String>,
 }
 
 impl Language for Mqtt {
@@ -66,7 +65,7 @@ impl Language for Mqtt {
             });
         }
         let properties = rest.properties()?;
-        if properties.has_no_wildcards {
+        if settings.is_of_fleet && properties.has_no_wildcards {
             return Err(Ended::Refused("the broker has no subscriptions with `+` and `#`, which a fleet needs".into()));
         }
         if settings.is_of_fleet && !properties.has_quality_0_alone {
@@ -80,7 +79,7 @@ impl Language for Mqtt {
             }
         }
         let longest = properties.longest.map_or(packet::LONGEST, |longest| longest.min(packet::LONGEST));
-        Ok(Mqtt { longest, user: settings.user.clone() })
+        Ok(Mqtt { longest })
     }
 
     fn longest(&self) -> usize {
@@ -132,19 +131,10 @@ impl Language for Mqtt {
                 Ok(Heard::Message { number: 0, key, bytes: rest.rest().to_owned(), attachment: beside })
             }
             Kind::SubscribeAck => {
-                rest.skip(2)?;
+                let number = u16::from_be_bytes([rest.byte()?, rest.byte()?]);
                 rest.properties()?;
                 match rest.byte()? {
-                    0x80.. => Err(Ended::Refused(match &self.user {
-                        Some(user) => {
-                            format!("the broker does not let user `{user}` read what a fleet needs: allow it `saoms/#`")
-                        }
-                        None => {
-                            "the broker lets a program without a user not read what a fleet needs: give `user`, or \
-                                 allow all `saoms/#`"
-                                .to_owned()
-                        }
-                    })),
+                    0x80.. => Err(Ended::NotRead(number)),
                     _ => Ok(Heard::Other),
                 }
             }
@@ -212,11 +202,17 @@ mod tests {
     fn a_message_arrives_as_it_was_put() {
         let message = Message { key: "saoms/2/topic/A/B", message: b"CDR", attachment: b"envelope" };
         let sent = Mqtt::put("", message).unwrap();
-        let mut mqtt = Mqtt { longest: 0, user: None };
+        let mut mqtt = Mqtt { longest: 0 };
         let heard = mqtt.hear("", &mut sent.as_slice()).unwrap();
         let bytes = b"CDRenvelope".to_vec();
         assert_eq!(heard, Heard::Message { number: 0, key: message.key.to_owned(), bytes, attachment: 8 });
         assert!(Mqtt::put("", Message { key: "a/+", ..message }).is_err());
+    }
+
+    #[test]
+    fn keys_that_may_not_be_read_are_known_by_their_number() {
+        let heard = Mqtt { longest: 0 }.hear("", &mut &[0x90, 4, 1, 2, 0, 0x87][..]);
+        assert!(matches!(heard, Err(Ended::NotRead(0x102))), "{heard:?}");
     }
 
     #[test]
@@ -233,8 +229,8 @@ mod tests {
             for byte in 0..=255 {
                 let mut bytes = whole.clone();
                 bytes[end] = byte;
-                let _ = Mqtt { longest: 0, user: None }.hear("", &mut bytes.as_slice());
-                let _ = Mqtt { longest: 0, user: None }.hear("", &mut &bytes[..end]);
+                let _ = Mqtt { longest: 0 }.hear("", &mut bytes.as_slice());
+                let _ = Mqtt { longest: 0 }.hear("", &mut &bytes[..end]);
             }
         }
     }
