@@ -8,12 +8,11 @@ use saoms_transport::mqtt::Mqtt;
 use saoms_transport::{Listener, Message, Session, Settings, Transport};
 use serde::Serialize;
 
+use crate::known::{AGAIN, Given, Known, Outcome, Refused, outcome};
 use crate::messages::{ActionOrder, Edge, Head, InstantActions, Node, Order, State, now};
 
 /// The version of VDA 5050 that is spoken.
 const VERSION: &str = "2.0.0";
-/// Time after which a vehicle is asked again for its first state.
-const AGAIN: Duration = Duration::from_millis(200);
 /// The token of the only subscription.
 const STATES: u64 = 1;
 
@@ -26,43 +25,10 @@ pub(crate) struct Names {
     pub(crate) serial_number: String,
 }
 
-/// How an order goes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    Running,
-    Done,
-    /// Why it is not carried out.
-    Failed(String),
-}
-
-/// The newest order: what a vehicle says of others does not count.
-#[derive(Clone, Debug, Default)]
-struct Given {
-    order: String,
-    /// The node where it ends.
-    target: String,
-    /// Its action, if it has one.
-    action: Option<String>,
-    /// The action that cancels it, if that was given.
-    cancel: Option<String>,
-}
-
 #[derive(Debug, Default)]
 struct Shared {
     known: Mutex<Known>,
     changed: Condvar,
-}
-
-#[derive(Debug, Default)]
-struct Known {
-    /// What the vehicle said last.
-    state: Option<State>,
-    /// The newest order; none before the first one.
-    given: Option<Given>,
-    /// True while the broker is away.
-    is_away: bool,
-    /// True if the vehicle is to be asked for its state, which was not heard while the broker was away.
-    wants_state: bool,
 }
 
 /// The link to a vehicle. It never waits but in [`stop`](Link::stop) and [`wait`](Link::wait).
@@ -80,17 +46,26 @@ struct Hears(Arc<Shared>);
 
 impl Listener for Hears {
     fn deliver(&self, _: u64, message: Message<'_>) -> bool {
-        // What is no state says nothing.
-        if let Ok(state) = serde_json::from_slice::<State>(message.message) {
-            self.0.lock().state = Some(state);
-            self.0.changed.notify_all();
+        let read = serde_json::from_slice::<State>(message.message);
+        let mut known = self.0.lock();
+        match read {
+            Ok(state) => {
+                known.state = Some(state);
+                self.0.changed.notify_all();
+            }
+            // What is no state says nothing.
+            Err(error) if matches!(known.refused, Refused::None) => known.refused = Refused::Untold(error.to_string()),
+            Err(_) => {}
         }
         true
     }
 
-    fn link(&self, is_up: bool, _: &str) {
+    fn link(&self, is_up: bool, reason: &str) {
         let mut known = self.0.lock();
         (known.is_away, known.wants_state) = (!is_up, is_up);
+        if !is_up {
+            reason.clone_into(&mut known.reason);
+        }
     }
 }
 
@@ -125,17 +100,43 @@ impl Link {
         self.say_at_once(self.action("stateRequest", "state", "NONE"))
     }
 
-    /// Asks the vehicle for its first state until it says it; false if it does not in time.
-    pub(crate) fn wait(&self, patience: Duration) -> bool {
+    /// Asks the vehicle for its first state until it says it.
+    ///
+    /// # Errors
+    /// It does not in time: why, as far as that is known.
+    pub(crate) fn wait(&self, patience: Duration) -> Result<(), String> {
         let begin = Instant::now();
         while begin.elapsed() < patience {
-            // A vehicle that has just started, too, may not hear the first question.
-            let is_asked = self.ask().is_ok();
-            if is_asked && self.shared.wait(AGAIN, |known| known.state.is_some()) {
-                return true;
+            // A vehicle that has just started, too, may not hear the first question, and some cannot be said.
+            let _ = self.ask();
+            if self.shared.wait(AGAIN, |known| known.state.is_some()) {
+                return Ok(());
             }
         }
-        false
+        let known = self.shared.lock();
+        Err(match &known.refused {
+            Refused::Untold(why) => format!("what it says is no state: {why}"),
+            _ if known.reason.is_empty() => "it does not say its state".to_owned(),
+            _ => format!("it does not say its state: {}", known.reason),
+        })
+    }
+
+    /// Why what the vehicle said is no state, the first time; `None` once that was told.
+    pub(crate) fn refused(&self) -> Option<String> {
+        let mut known = self.shared.lock();
+        match std::mem::replace(&mut known.refused, Refused::Told) {
+            Refused::Untold(why) => Some(why),
+            before => {
+                known.refused = before;
+                None
+            }
+        }
+    }
+
+    /// Why the broker is away, while it is.
+    pub(crate) fn trouble(&self) -> Option<String> {
+        let known = self.shared.lock();
+        known.is_away.then(|| known.reason.clone())
     }
 
     /// What the vehicle said last.
@@ -143,9 +144,14 @@ impl Link {
         self.shared.lock().state.clone()
     }
 
+    /// The number of stops so far.
+    pub(crate) fn stops(&self) -> u32 {
+        self.shared.lock().stops
+    }
+
     /// Orders the way over these nodes, with an action at the last one. The order before is over. False: the broker is
-    /// away, and the vehicle hears nothing.
-    pub(crate) fn order(&self, mut nodes: Vec<Node>, action: Option<ActionOrder>) -> Result<bool, String> {
+    /// away, and the vehicle hears nothing. There is none if the vehicle was stopped after this number of stops.
+    pub(crate) fn order(&self, mut nodes: Vec<Node>, action: Option<ActionOrder>, stops: u32) -> Result<bool, String> {
         let number = self.orders.fetch_add(1, Ordering::Relaxed) + 1;
         let id = format!("saoms-{}-{number}", self.start);
         let edges = nodes.windows(2).map(|pair| Edge {
@@ -166,13 +172,10 @@ impl Link {
         if let (Some(last), Some(action)) = (nodes.last_mut(), action) {
             last.actions.push(action);
         }
-        let mut known = self.shared.lock();
-        if known.is_away {
+        // Before it leaves: the vehicle may answer before this thread goes on.
+        if !self.shared.lock().give(given, stops)? {
             return Ok(false);
         }
-        // Before it leaves: the vehicle may answer before this thread goes on.
-        known.given = Some(given);
-        drop(known);
         let order = Order { head: self.head(), order_id: &id, order_update_id: 0, nodes, edges };
         self.say("order", &order).map(|()| true)
     }
@@ -198,23 +201,32 @@ impl Link {
         }
     }
 
-    /// Cancels the newest order, once however many want it.
-    pub(crate) fn cancel(&self) -> Result<(), String> {
-        let cancel = self.action("cancelOrder", "cancel", "HARD");
-        match &mut self.shared.lock().given {
-            Some(given) if given.cancel.is_none() => given.cancel = Some(cancel.action_id.clone()),
-            _ => return Ok(()),
+    /// Cancels the newest order, and says so again from time to time, as often as this is called, until the vehicle
+    /// answers. However many want it, it is one action.
+    pub(crate) fn cancel(&self) {
+        let mut action = self.action("cancelOrder", "cancel", "HARD");
+        let id = self.shared.lock().cancel_due(Instant::now(), || action.action_id.clone());
+        if let Some(id) = id {
+            action.action_id = id;
+            // What cannot be said now is said again.
+            let _ = self.say_at_once(action);
         }
-        self.say_at_once(cancel)
     }
 
     /// Cancels what runs, and waits until the vehicle says that it stands still; false if it does not.
     pub(crate) fn stop(&self, patience: Duration) -> bool {
+        self.shared.lock().stops += 1;
         if self.outcome() == Outcome::Done && self.state().is_some_and(|state| !state.driving) {
             return true;
         }
-        let is_said = self.cancel().is_ok();
-        is_said && self.shared.wait(patience, |known| known.given.as_ref().is_none_or(|given| stands(given, known)))
+        let begin = Instant::now();
+        loop {
+            self.cancel();
+            let Some(rest) = patience.checked_sub(begin.elapsed()) else { return false };
+            if self.shared.wait(rest.min(AGAIN), Known::stands) {
+                return true;
+            }
+        }
     }
 
     fn head(&self) -> Head<'_> {
@@ -242,79 +254,20 @@ impl Link {
     }
 }
 
-/// How an order goes, as the vehicle says it.
-fn outcome(given: &Given, state: &State) -> Outcome {
-    if let Some(error) =
-        state.errors.iter().find(|one| one.is_about("orderId", &given.order) || one.error_level == "FATAL")
-    {
-        return Outcome::Failed(format!("{} {}", error.error_type, error.error_description).trim_end().to_owned());
-    }
-    if !["AUTOMATIC", "SEMIAUTOMATIC", ""].contains(&&*state.operating_mode) {
-        return Outcome::Failed(format!("it is in mode {}", state.operating_mode));
-    }
-    if state.order_id != given.order {
-        return Outcome::Running;
-    }
-    let action = given.action.as_ref().map(|id| state.action(id));
-    match action {
-        Some(Some(action)) if action.action_status == "FAILED" => {
-            Outcome::Failed(format!("its action failed {}", action.result_description).trim_end().to_owned())
-        }
-        Some(action) if action.is_none_or(|action| action.action_status != "FINISHED") => Outcome::Running,
-        _ if state.has_arrived() && state.last_node_id == given.target => Outcome::Done,
-        _ => Outcome::Running,
-    }
-}
-
-/// True if the vehicle says that it stands still, and carries out nothing of an order any more.
-fn stands(given: &Given, known: &Known) -> bool {
-    let (Some(state), Some(cancel)) = (&known.state, &given.cancel) else { return false };
-    // It answers one that it does not need with an error, or with a failed action.
-    let is_over = |status: &str| ["FINISHED", "FAILED"].contains(&status);
-    let is_answered = state.action(cancel).is_some_and(|action| is_over(&action.action_status))
-        || state.errors.iter().any(|one| one.is_about("actionId", cancel));
-    let is_idle =
-        given.action.as_ref().and_then(|id| state.action(id)).is_none_or(|action| is_over(&action.action_status));
-    is_answered && is_idle && !state.driving
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn state(text: &str) -> State {
-        serde_json::from_str(text).unwrap()
-    }
-
     #[test]
-    fn what_a_vehicle_says_decides_on_the_newest_order_alone() {
-        let (order, target) = ("o2".to_owned(), "3-4".to_owned());
-        let move_to = Given { order: order.clone(), target: target.clone(), ..Given::default() };
-        let pick = Given { order, target, action: Some("a".to_owned()), cancel: None };
-        let there = r#"{"orderId":"o2","lastNodeId":"3-4","nodeStates":[],"edgeStates":[],"driving":false,"#;
-        for (given, text, expected) in [
-            (&move_to, r#"{"orderId":"o1","lastNodeId":"3-4"}"#.to_owned(), "Running"),
-            (&move_to, r#"{"orderId":"o2","lastNodeId":"2-4","nodeStates":[{}],"driving":true}"#.to_owned(), "Running"),
-            (&move_to, r#"{"orderId":"o2","lastNodeId":"2-4"}"#.to_owned(), "Running"),
-            (&move_to, format!("{there}\"operatingMode\":\"AUTOMATIC\"}}"), "Done"),
-            (&move_to, format!("{there}\"operatingMode\":\"MANUAL\"}}"), "Failed(\"it is in mode MANUAL\")"),
-            (&pick, format!("{there}\"actionStates\":[]}}"), "Running"),
-            (&pick, format!(r#"{there}"actionStates":[{{"actionId":"a","actionStatus":"RUNNING"}}]}}"#), "Running"),
-            (&pick, format!(r#"{there}"actionStates":[{{"actionId":"a","actionStatus":"FINISHED"}}]}}"#), "Done"),
-            (
-                &pick,
-                format!(r#"{there}"actionStates":[{{"actionId":"a","actionStatus":"FAILED"}}]}}"#),
-                "Failed(\"its action failed\")",
-            ),
-            (
-                &move_to,
-                r#"{"orderId":"o1","errors":[{"errorType":"orderError","errorLevel":"WARNING",
-                    "errorReferences":[{"referenceKey":"orderId","referenceValue":"o2"}]}]}"#
-                    .to_owned(),
-                "Failed(\"orderError\")",
-            ),
-        ] {
-            assert_eq!(format!("{:?}", outcome(given, &state(&text))), expected, "{text}");
-        }
+    fn what_keeps_a_state_away_is_known() {
+        let shared = Arc::<Shared>::default();
+        let hears = Hears(Arc::clone(&shared));
+        let say = |text: &str| hears.deliver(STATES, Message { key: "", message: text.as_bytes(), attachment: b"" });
+        assert!(say("[1]") && say("{"));
+        assert!(matches!(&shared.lock().refused, Refused::Untold(why) if why.contains("line 1 column")));
+        hears.link(false, "the broker is away");
+        hears.link(true, "");
+        let known = shared.lock();
+        assert_eq!((known.is_away, &*known.reason), (false, "the broker is away"));
     }
 }

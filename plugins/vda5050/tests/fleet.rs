@@ -8,7 +8,9 @@ use std::sync::{Arc, Mutex, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use saoms_api::{Class, Component, Context, Failure, info};
 use saoms_components::grid::Block;
+use saoms_components::hardware::{Action, Hardware, HardwareReference, Progress};
 use saoms_components::messages::{EVENT_LUGGAGE, EventLuggage};
 use saoms_components::robot::Robot;
 use saoms_testkit::Bench;
@@ -96,9 +98,18 @@ impl Listener for Ears {
 
 const ORDER: u64 = 1;
 
+/// What a vehicle does with an order.
+enum Conduct {
+    Obeys,
+    Refuses,
+    /// It drives until it has heard the second time that it is to stop, since the first one is lost; then it stands at
+    /// this place between its nodes, where 1 is that of the target.
+    Drives(f64),
+}
+
 impl Simulated {
-    /// A vehicle at (0,0). `fails` says of the numbers of its orders, from 1, which it does not carry out.
-    fn start(url: &str, fails: impl Fn(usize) -> bool + Send + 'static) -> Simulated {
+    /// A vehicle at (0,0). `conduct` says what it does with its orders, by their numbers, from 1.
+    fn start(url: &str, conduct: impl Fn(usize) -> Conduct + Send + 'static) -> Simulated {
         let (ears, heard) = mpsc::channel();
         let settings = Settings::new(url.to_owned(), None, Files::default());
         let session = Session::<Mqtt>::join(settings, Box::new(Ears(Mutex::new(ears)))).map_err(|e| e.text).unwrap();
@@ -120,11 +131,24 @@ impl Simulated {
                 let text = serde_json::to_vec(state).unwrap();
                 let _ = own.put("uagv/v2/ACME/7/state", &text, &[], false);
             };
-            let mut orders = 0;
+            let (mut orders, mut drives, mut cancel) = (0, None, None);
             while let Ok((token, message)) = heard.recv() {
                 if token != ORDER {
                     for action in message["actions"].as_array().unwrap() {
                         noted.lock().unwrap().push(action["actionType"].as_str().unwrap().to_owned());
+                        if action["actionType"] == "cancelOrder" && drives.is_some() {
+                            let Some(first) = &cancel else {
+                                cancel = Some(action["actionId"].clone());
+                                continue;
+                            };
+                            assert_eq!(first, &action["actionId"]);
+                            let (x, node): (f64, Value) = drives.take().unwrap();
+                            (state["nodeStates"], state["driving"]) = (json!([]), json!(false));
+                            state["agvPosition"]["x"] = json!(x);
+                            if x == 1.0 {
+                                state["lastNodeId"] = node;
+                            }
+                        }
                         let done = json!({"actionId": action["actionId"], "actionStatus": "FINISHED"});
                         state["actionStates"].as_array_mut().unwrap().push(done);
                     }
@@ -145,7 +169,8 @@ impl Simulated {
                 noted.lock().unwrap().push(format!("{what} {}", last["nodeId"].as_str().unwrap()));
                 state["orderId"] = message["orderId"].clone();
                 state["errors"] = json!([]);
-                if fails(orders) {
+                let conduct = conduct(orders);
+                if matches!(conduct, Conduct::Refuses) {
                     state["errors"] = json!([{"errorType": "orderError", "errorLevel": "WARNING", "errorDescription": "no",
                         "errorReferences": [{"referenceKey": "orderId", "referenceValue": message["orderId"]}]}]);
                     say(&state);
@@ -153,6 +178,10 @@ impl Simulated {
                 }
                 (state["nodeStates"], state["driving"]) = (json!([last]), json!(nodes.len() > 1));
                 say(&state);
+                if let Conduct::Drives(x) = conduct {
+                    drives = Some((x, last["nodeId"].clone()));
+                    continue;
+                }
                 let finished = |action: &Value| json!({"actionId": action["actionId"], "actionStatus": "FINISHED"});
                 state["actionStates"] = actions.iter().map(finished).collect();
                 (state["nodeStates"], state["driving"]) = (json!([]), json!(false));
@@ -169,9 +198,49 @@ impl Simulated {
     }
 }
 
-/// A robot with this vehicle, which is to carry luggage from (1,1) to (2,1).
-fn robot(url: &str) -> Bench {
-    let given = [("broker", url), ("manufacturer", "ACME"), ("serialNumber", "7"), ("patience", "2s")];
+/// A robot that begins to collect, and then to move, and asks each time once more.
+#[derive(Class)]
+#[class(name = "test.Caller", periodic, reference("world": Hardware))]
+struct Caller {
+    world: HardwareReference,
+    calls: u32,
+    said: Vec<Progress>,
+}
+
+impl Component for Caller {
+    type Properties = ();
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.world = context.reference("world")?;
+        self.world.enter(context, 1, "Caller".to_owned(), Block::new(0, 0))?;
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let (collect, move_to) = (Action::collect(1, Block::new(0, 0)), Action::move_to(Block::new(1, 0)));
+        match self.calls {
+            0 => {
+                self.world.begin(context, 1, collect)?;
+            }
+            1 | 4 => match self.world.poll(context, 1)? {
+                Progress::Running => return Ok(()),
+                progress => self.said.push(progress),
+            },
+            2 | 5 => self.said.push(self.world.poll(context, 1)?),
+            3 => {
+                self.said.push(self.world.begin(context, 1, collect)?);
+                self.world.begin(context, 1, move_to)?;
+            }
+            _ => info!(context, "heard {:?}", self.said),
+        }
+        self.calls += 1;
+        Ok(())
+    }
+}
+
+/// A robot with this vehicle, which is to carry luggage from (1,0) to (2,0).
+fn robot(url: &str, patience: &str) -> Bench {
+    let given = [("broker", url), ("manufacturer", "ACME"), ("serialNumber", "7"), ("patience", patience)];
     let mut vehicle = Bench::of::<Vehicle>(&given).unwrap();
     vehicle.start().unwrap();
     let robot = Bench::of::<Robot>(&[("ID", "Robot1"), ("discharge", "0")]).unwrap();
@@ -181,12 +250,14 @@ fn robot(url: &str) -> Bench {
     robot
 }
 
-/// Executes the robot until it has written a line with these words, in at most about a minute.
-fn execute_until(robot: &mut Bench, words: &str) {
+/// Executes the robot until it has written a line with these words, in at most about a minute: all lines until then.
+fn execute_until(robot: &mut Bench, words: &str) -> Vec<String> {
+    let mut lines = Vec::new();
     for _ in 0..30_000 {
         robot.execute().unwrap();
-        if robot.log().iter().any(|line| line.contains(words)) {
-            return;
+        lines.extend(robot.log().iter().map(|line| (*line).to_owned()));
+        if lines.iter().any(|line| line.contains(words)) {
+            return lines;
         }
         thread::sleep(Duration::from_millis(2));
     }
@@ -196,8 +267,8 @@ fn execute_until(robot: &mut Bench, words: &str) {
 #[test]
 fn a_vehicle_brings_the_luggage() {
     let Some(broker) = Broker::start() else { return };
-    let vehicle = Simulated::start(&broker.url(), |_| false);
-    let mut robot = robot(&broker.url());
+    let vehicle = Simulated::start(&broker.url(), |_| Conduct::Obeys);
+    let mut robot = robot(&broker.url(), "2s");
     execute_until(&mut robot, "deposited luggage 1 at (2,0)");
     robot.shutdown().unwrap();
     assert_eq!(vehicle.told(), ["move 1-0", "pick 1-0", "move 2-0", "drop 2-0"]);
@@ -206,8 +277,9 @@ fn a_vehicle_brings_the_luggage() {
 #[test]
 fn an_order_that_a_vehicle_refuses_is_given_again() {
     let Some(broker) = Broker::start() else { return };
-    let vehicle = Simulated::start(&broker.url(), |number| number == 1);
-    let mut robot = robot(&broker.url());
+    let conduct = |number| if number == 1 { Conduct::Refuses } else { Conduct::Obeys };
+    let vehicle = Simulated::start(&broker.url(), conduct);
+    let mut robot = robot(&broker.url(), "2s");
     execute_until(&mut robot, "could not move to (1,0)");
     execute_until(&mut robot, "deposited luggage 1 at (2,0)");
     robot.shutdown().unwrap();
@@ -217,12 +289,98 @@ fn an_order_that_a_vehicle_refuses_is_given_again() {
 #[test]
 fn a_vehicle_whose_broker_is_killed_goes_on_when_that_is_there_again() {
     let Some(mut broker) = Broker::start() else { return };
-    let _vehicle = Simulated::start(&broker.url(), |_| false);
-    let mut robot = robot(&broker.url());
+    let _vehicle = Simulated::start(&broker.url(), |_| Conduct::Obeys);
+    let mut robot = robot(&broker.url(), "2s");
     execute_until(&mut robot, "collected luggage 1");
     broker.restart();
     execute_until(&mut robot, "deposited luggage 1 at (2,0)");
     robot.shutdown().unwrap();
+}
+
+/// Its robot keeps both blocks until it is known on which one it stands.
+#[test]
+fn a_move_that_takes_too_long_has_failed_only_when_the_vehicle_stands() {
+    let Some(broker) = Broker::start() else { return };
+    let conduct = |number| if number == 1 { Conduct::Drives(0.4) } else { Conduct::Obeys };
+    let vehicle = Simulated::start(&broker.url(), conduct);
+    let mut robot = robot(&broker.url(), "200ms");
+    execute_until(&mut robot, "could not move to (1,0)");
+    let told = vehicle.told();
+    assert!(told[0] == "move 1-0" && told[1..].len() > 1, "{told:?}");
+    assert!(told[1..].iter().all(|what| what == "cancelOrder"), "{told:?}");
+    execute_until(&mut robot, "deposited luggage 1 at (2,0)");
+    robot.shutdown().unwrap();
+}
+
+/// The patience is so long that only the stop ends the move, which came to its end nevertheless.
+#[test]
+fn a_move_that_is_stopped_from_outside_is_done_if_the_vehicle_stands_at_its_end() {
+    let Some(broker) = Broker::start() else { return };
+    let conduct = |number| if number == 1 { Conduct::Drives(1.0) } else { Conduct::Obeys };
+    let vehicle = Simulated::start(&broker.url(), conduct);
+    let mut robot = robot(&broker.url(), "10min");
+    while vehicle.told().is_empty() {
+        robot.execute().unwrap();
+        thread::sleep(Duration::from_millis(2));
+    }
+    robot.stop_hardware().unwrap();
+    let log = execute_until(&mut robot, "deposited luggage 1 at (2,0)");
+    robot.shutdown().unwrap();
+    assert!(!log.iter().any(|line| line.contains("could not")), "{log:?}");
+    let mut told = vehicle.told();
+    assert!(told.iter().filter(|what| *what == "cancelOrder").count() > 1, "{told:?}");
+    told.dedup();
+    assert_eq!(told, ["move 1-0", "cancelOrder", "pick 1-0", "move 2-0", "drop 2-0"]);
+}
+
+/// Where it stands is known to nobody before.
+#[test]
+fn a_robot_that_ends_waits_until_its_vehicle_stands() {
+    let Some(broker) = Broker::start() else { return };
+    let vehicle = Simulated::start(&broker.url(), |_| Conduct::Drives(1.0));
+    let mut robot = robot(&broker.url(), "10min");
+    while vehicle.told().is_empty() {
+        robot.execute().unwrap();
+        thread::sleep(Duration::from_millis(2));
+    }
+    robot.shutdown().unwrap();
+    assert!(vehicle.told().iter().filter(|what| *what == "cancelOrder").count() > 1);
+}
+
+#[test]
+fn a_password_leaves_this_machine_with_tls_alone() {
+    let judge = |broker: &str, more: &[(&str, &str)]| {
+        let given = [("broker", broker), ("manufacturer", "ACME"), ("serialNumber", "7")];
+        Bench::of::<Vehicle>(&[&given[..], more].concat()).map(drop).map_err(|failure| failure.to_string())
+    };
+    let account = [("user", "fleet"), ("password", "$VEHICLE_PASSWORD")];
+    for (broker, more, expected) in [
+        ("ssl://10.0.0.5:8883", &[][..], "expected `mqtt://host:port`, or `mqtts://host:port` with TLS"),
+        ("mqtt://10.0.0.5:1883", &account[..], "a password is for `mqtt://10.0.0.5:1883`, which has no TLS"),
+        ("mqtt://10.0.0.5:1883", &account[..1], "`user` and `password` are given together"),
+    ] {
+        let found = judge(broker, more).unwrap_err();
+        assert!(found.contains(expected), "{found}");
+    }
+    for (broker, more) in [("mqtts://10.0.0.5:8883", &account[..]), ("mqtt://localhost:1883", &account[..])] {
+        assert_eq!(judge(broker, more), Ok(()), "{broker}");
+    }
+}
+
+/// As one does that failed before it heard the answer.
+#[test]
+fn a_robot_that_asks_again_hears_how_the_action_ended() {
+    let Some(broker) = Broker::start() else { return };
+    let conduct = |number| if number == 1 { Conduct::Obeys } else { Conduct::Refuses };
+    let vehicle = Simulated::start(&broker.url(), conduct);
+    let given = [("broker", &*broker.url()), ("manufacturer", "ACME"), ("serialNumber", "7")];
+    let mut hardware = Bench::of::<Vehicle>(&given).unwrap();
+    hardware.start().unwrap();
+    let mut caller = Bench::of::<Caller>(&[]).unwrap().wire("world", hardware, "hardware");
+    caller.start().unwrap();
+    let log = execute_until(&mut caller, "heard");
+    assert!(log.last().unwrap().contains("heard [Done, Done, Done, Failed, Failed]"), "{log:?}");
+    assert_eq!(vehicle.told()[..2], ["pick 0-0", "move 1-0"]);
 }
 
 #[test]
