@@ -143,9 +143,9 @@ struct Bell {
     rung: u64,
 }
 
-/// Alerts in each execution, and executions: more than may wait.
+/// Alerts in each execution, and executions: more than may wait beside those that are being delivered.
 const AT_ONCE: u64 = 1000;
-const TIMES: u64 = 70;
+const TIMES: u64 = 90;
 
 impl Component for Bell {
     type Properties = ();

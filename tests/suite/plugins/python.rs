@@ -7,7 +7,8 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::support::{PROGRAM, code, saoms, saoms_in, stderr, stdout, text};
+use crate::plugins::library;
+use crate::support::{PROGRAM, code, command, root, stderr, stdout, text};
 
 /// True if there is a Python that the plugin can use; a test that is skipped says so.
 #[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
@@ -31,6 +32,15 @@ fn folder(module: &str) -> TempDir {
 <property name="ID" value="A"/><property name="period" value="10ms"/></component></composite>"#;
     fs::write(folder.path().join("fleet.composite"), composite).unwrap();
     folder
+}
+
+/// Runs `saoms` in a folder, with the plugin, which packages have beside the command.
+fn saoms_in(folder: &Path, arguments: &[&str]) -> Output {
+    command(arguments).current_dir(folder).env("SAOMS_PLUGIN_PATH", library("saoms_python")).output().unwrap()
+}
+
+fn saoms(arguments: &[&str]) -> Output {
+    saoms_in(root(), arguments)
 }
 
 fn run(folder: &Path, more: &[&str]) -> Output {
@@ -72,6 +82,7 @@ fn a_new_plugin_passes_its_own_tests() {
     assert!(made.status.success() && stdout(&made).contains("python3 -m unittest"), "{}", text(&made));
     let mut tests = Command::new("python3");
     tests.args(["-m", "unittest"]).current_dir(folder.path().join("my-counter")).env("SAOMS", PROGRAM);
+    tests.env("SAOMS_PLUGIN_PATH", library("saoms_python"));
     let tests = tests.output().unwrap();
     assert!(tests.status.success() && stderr(&tests).contains("Ran 2 tests"), "{}", text(&tests));
     let refused = saoms_in(folder.path(), &["new", "plugin", "import", "--kind", "python"]);
