@@ -1,14 +1,15 @@
 //! Components in Python: `plugins/python`, which runs them, and the example.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::plugins::library;
-use crate::support::{PROGRAM, code, command, root, stderr, stdout, text};
+use crate::support::{PROGRAM, code, command, empty_folder, root, stderr, stdout, text};
 
 /// True if there is a Python that the plugin can use; a test that is skipped says so.
 #[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
@@ -34,9 +35,16 @@ fn folder(module: &str) -> TempDir {
     folder
 }
 
-/// Runs `saoms` in a folder, with the plugin, which packages have beside the command.
+/// A folder that has the plugin alone, which packages have beside the command.
+static PLUGIN: LazyLock<PathBuf> = LazyLock::new(|| {
+    let folder = empty_folder("python-plugin");
+    fs::copy(library("saoms_python"), folder.join("libsaoms_python.so")).unwrap();
+    folder
+});
+
+/// Runs `saoms` in a folder, with the plugin.
 fn saoms_in(folder: &Path, arguments: &[&str]) -> Output {
-    command(arguments).current_dir(folder).env("SAOMS_PLUGIN_PATH", library("saoms_python")).output().unwrap()
+    command(arguments).current_dir(folder).env("SAOMS_PLUGIN_PATH", &*PLUGIN).output().unwrap()
 }
 
 fn saoms(arguments: &[&str]) -> Output {
@@ -82,7 +90,7 @@ fn a_new_plugin_passes_its_own_tests() {
     assert!(made.status.success() && stdout(&made).contains("python3 -m unittest"), "{}", text(&made));
     let mut tests = Command::new("python3");
     tests.args(["-m", "unittest"]).current_dir(folder.path().join("my-counter")).env("SAOMS", PROGRAM);
-    tests.env("SAOMS_PLUGIN_PATH", library("saoms_python"));
+    tests.env("SAOMS_PLUGIN_PATH", &*PLUGIN);
     let tests = tests.output().unwrap();
     assert!(tests.status.success() && stderr(&tests).contains("Ran 2 tests"), "{}", text(&tests));
     let refused = saoms_in(folder.path(), &["new", "plugin", "import", "--kind", "python"]);
