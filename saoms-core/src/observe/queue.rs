@@ -12,7 +12,7 @@ const CAPACITY: usize = 65_536;
 /// Number of waiting events at which the reader takes them at once; so it does with few long lines or samples.
 const HURRY: usize = CAPACITY / 4;
 /// Time between two batches, in which events gather: a writer wakes the reader once for a batch, and not for each of
-/// many thousand events a second. Nobody sees that it is not less.
+/// many thousand events a second. People do not notice this delay.
 const PAUSE: Duration = Duration::from_millis(10);
 /// Maximum size of the lines and steps among them, in bytes, beside the last one.
 const MOST_BYTES: usize = 64 << 20;
